@@ -118,8 +118,8 @@ impl Contacts {
         if let (Some((index, depth)), Some(contact)) =
             (deepest.filter(|(_, depth)| **depth > 0.0), self.0.committed.first())
         {
-            let profile = contact.profile();
-            let radius = profile.check_radius(profile.radius(*depth));
+            let indenter = contact.indenter();
+            let radius = indenter.check_radius(indenter.radius(*depth));
             radius.and_then(|radius| range::CONTACT_RADIUS.check(radius)).map_err(|error| {
                 Refusal::at(Code::BeyondProfile, format!("/indentation/{index}"), error.to_string())
             })?;

@@ -50,20 +50,20 @@ impl Contact {
         let terms = if carried > 0.0 { summed / carried } else { 0.0 };
         let (radius, indentation) = (self.stiffness_radius(), self.indentation());
         // Where g is steep, a rounded radius moves the indentation by this many units.
-        let steepness = radius * self.profile.slope(radius) / indentation;
+        let steepness = radius * self.indenter.slope(radius) / indentation;
         let steepness = known(steepness).clamp(0.0, MAX_STEEPNESS);
-        let mean_pressure = match self.profile.line() {
+        let mean_pressure = match self.indenter.line() {
             Some(line) => self.normal_force() / (2.0 * self.contact_radius() * line.length()),
             None => mean_pressure(self.normal_force(), radius),
         };
-        let interpolation = self.profile.interpolation_error(radius);
+        let interpolation = self.profile().interpolation_error(radius);
         let kernel = self.elasticity.e_star() / std::f64::consts::PI * (self.path_kernel + 2.0 * interpolation.kernel)
             / mean_pressure;
         let kernel = known(kernel);
         let unit_of_load = 2.0 * self.elasticity.e_star() / self.normal_force();
         let moved = known(unit_of_load * radius * self.indentation_error);
         let unresolved = moved + if interpolation.load > 0.0 { known(unit_of_load * self.load_error()) } else { 0.0 };
-        let unit = f64::EPSILON * self.profile.cancellation(radius);
+        let unit = f64::EPSILON * self.profile().cancellation(radius);
         let force_error = unit * (2.0 + 6.0 * terms + steepness) + self.path_error + unresolved;
         let stress_error = unit * (4.0 + 12.0 * terms + 2.0 * steepness)
             + self.path_error
@@ -82,7 +82,7 @@ impl Contact {
         let (mut sum, mut beyond) = (0.0, 0.0);
         for (ring, line) in self.history.rings() {
             let slope = line.slope.value();
-            let error = (slope - beyond) * self.profile.interpolation_error(ring.outer.radius).load;
+            let error = (slope - beyond) * self.profile().interpolation_error(ring.outer.radius).load;
             sum += error * error;
             beyond = slope;
         }

@@ -6,6 +6,8 @@ use super::profile::StressRadius;
 use super::slip_history::SlipHistory;
 use crate::elasticity::Elasticity;
 use crate::error::Error;
+use crate::indenter::Indenter;
+use crate::limit::Coulomb;
 use crate::normal::{ContactSummary, Preload};
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Profile;
@@ -32,7 +34,7 @@ use crate::{normal, range};
 #[derive(Clone, Debug)]
 pub struct Contact {
     /// Shared by all copies of the contact, because a table is large.
-    pub(super) profile: Arc<Profile>,
+    pub(super) indenter: Arc<Indenter>,
     pub(super) elasticity: Elasticity,
     pub(super) friction: f64,
     pub(super) history: SlipHistory,
@@ -40,7 +42,8 @@ pub struct Contact {
     /// As prescribed, or as it follows from a prescribed indentation: rounding it twice would move the friction limit.
     pub(super) normal_force: f64,
     pub(super) dissipated: DoubleDouble,
-    pub(super) initial: ContactSummary,
+    /// Indentation, m, and normal force, N, at the preload.
+    pub(super) preload: (DoubleDouble, f64),
     /// Error of the initial indentation by the points of a table or a load curve, where load or radius is given
     /// instead, m.
     pub(super) indentation_error: f64,
@@ -77,26 +80,28 @@ impl Contact {
             Profile::Line(_) => elasticity.along_line(),
             _ => elasticity,
         };
+        let indenter = Indenter::new(profile);
         range::check_friction(friction)?;
         let indentation = match preload {
             Preload::NormalForce(force) => {
-                normal::indentation(&profile, &elasticity, range::check_normal_force(force)?)
+                normal::indentation(&indenter, &elasticity, range::check_normal_force(force)?)
             }
             Preload::Indentation(depth) => range::PRELOAD_INDENTATION.check(depth)?,
-            Preload::ContactRadius(radius) => normal::indentation_at(&profile, range::CONTACT_RADIUS.check(radius)?)?,
+            Preload::ContactRadius(radius) => normal::indentation_at(&indenter, range::CONTACT_RADIUS.check(radius)?)?,
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
-        range::CONTACT_RADIUS.check(profile.check_radius(profile.contact_radius(indentation))?)?;
-        let history = SlipHistory::new(&profile, DoubleDouble::from(indentation));
+        let contact_radius = indenter.check_radius(indenter.contact_radius(indentation))?;
+        range::CONTACT_RADIUS.check(contact_radius)?;
+        let indentation = DoubleDouble::from(indentation);
+        let history = SlipHistory::new(&Coulomb(&indenter), indentation);
         let normal_force = match preload {
             Preload::NormalForce(force) => force,
-            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&profile, &elasticity, history.edge()),
+            Preload::Indentation(_) | Preload::ContactRadius(_) => normal::force(&indenter, &elasticity, history.edge()),
         };
-        let initial = ContactSummary::of(&profile, &elasticity, friction, history.edge(), normal_force);
-        profile.line().map_or(Ok(()), |line| line.check_bulk(initial.contact_radius, normal_force))?;
-        let interpolation = profile.interpolation_error(initial.contact_radius);
+        indenter.line().map_or(Ok(()), |line| line.check_bulk(contact_radius, normal_force))?;
+        let interpolation = indenter.profile().interpolation_error(contact_radius);
         let indentation_error = match preload {
-            Preload::NormalForce(_) if interpolation.load > 0.0 => interpolation.load / initial.contact_radius,
+            Preload::NormalForce(_) if interpolation.load > 0.0 => interpolation.load / contact_radius,
             Preload::NormalForce(_) | Preload::Indentation(_) => 0.0,
             Preload::ContactRadius(_) => interpolation.level,
         };
@@ -106,14 +111,14 @@ impl Contact {
             DoubleDouble::ZERO
         };
         Ok(Contact {
-            profile,
+            indenter: Arc::new(indenter),
             elasticity,
             friction,
             history,
             displacement: DoubleDouble::ZERO,
             normal_force,
             dissipated: DoubleDouble::ZERO,
-            initial,
+            preload: (indentation, normal_force),
             indentation_error,
             path_error: 0.0,
             path_kernel: 0.0,
@@ -131,17 +136,17 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn virgin(&self) -> Contact {
-        self.clone().at_rest(DoubleDouble::from(self.initial.indentation), self.initial)
+        self.clone().at_rest(self.preload)
     }
 
-    /// The contact before its first move, at an indentation, m, that has this summary.
-    fn at_rest(self, indentation: DoubleDouble, initial: ContactSummary) -> Contact {
+    /// The contact before its first move, at an indentation, m, and the normal force, N, that belongs to it.
+    fn at_rest(self, preload: (DoubleDouble, f64)) -> Contact {
         Contact {
-            history: SlipHistory::new(&self.profile, indentation),
+            history: SlipHistory::new(&Coulomb(&self.indenter), preload.0),
             displacement: DoubleDouble::ZERO,
-            normal_force: initial.normal_force,
+            normal_force: preload.1,
+            preload,
             dissipated: DoubleDouble::ZERO,
-            initial,
             path_error: 0.0,
             path_kernel: 0.0,
             ..self
@@ -160,20 +165,8 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn without_history(self) -> Contact {
-        let (initial, indentation) = (self.summary(), self.history.edge().level);
-        self.at_rest(indentation, initial)
-    }
-
-    /// The same definition, displacement and load, without pieces of the slip history.
-    pub(super) fn clone_without_history(&self) -> Contact {
-        Contact { profile: Arc::clone(&self.profile), history: SlipHistory::default(), ..*self }
-    }
-
-    /// [`Contact::without_history`] but for the summary, which takes a search for the largest pressure.
-    pub(super) fn unmoved(self) -> Contact {
-        let initial = ContactSummary { normal_force: self.normal_force, ..self.initial };
-        let indentation = self.history.edge().level;
-        self.at_rest(indentation, initial)
+        let preload = (self.history.edge().level, self.normal_force);
+        self.at_rest(preload)
     }
 
     /// The virgin contact of the same bodies under another normal force, N.
@@ -189,21 +182,13 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn pressed(&self, normal_force: f64) -> Result<Contact, Error> {
-        let contact = self.pressed_without_summary(normal_force)?;
-        let initial = contact.summary();
-        Ok(Contact { initial, ..contact })
-    }
-
-    /// [`Contact::pressed`] but for the summary, which takes a search for the largest pressure.
-    pub(super) fn pressed_without_summary(&self, normal_force: f64) -> Result<Contact, Error> {
         let normal_force = range::check_normal_force(normal_force)?;
         let indentation = self.indentation_for(normal_force);
         range::PRELOAD_INDENTATION.check(indentation.value())?;
         self.check_indentation(indentation.value())?;
-        let half_width = self.profile.contact_radius(indentation.value());
-        self.profile.line().map_or(Ok(()), |line| line.check_bulk(half_width, normal_force))?;
-        let initial = ContactSummary { normal_force, ..self.initial };
-        Ok(self.clone().at_rest(indentation, initial))
+        let half_width = self.indenter.contact_radius(indentation.value());
+        self.indenter.line().map_or(Ok(()), |line| line.check_bulk(half_width, normal_force))?;
+        Ok(self.clone().at_rest((indentation, normal_force)))
     }
 }
 
@@ -249,7 +234,7 @@ impl Contact {
         if indentation.value() <= 0.0 {
             return 0.0;
         }
-        normal::force(&self.profile, &self.elasticity, &self.profile.point(indentation))
+        normal::force(&self.indenter, &self.elasticity, &self.indenter.point(indentation))
     }
 
     /// m = mu E*/G*: displacement of the surface where it slips, over its normal displacement.
@@ -265,7 +250,7 @@ impl Contact {
 
     /// Indentation, m, that carries a normal force, N.
     pub(super) fn indentation_for(&self, normal_force: f64) -> DoubleDouble {
-        DoubleDouble::from(normal::indentation(&self.profile, &self.elasticity, normal_force))
+        DoubleDouble::from(normal::indentation(&self.indenter, &self.elasticity, normal_force))
     }
 
     /// Normal force, N; to the bit the prescribed one, where one was prescribed.
@@ -278,22 +263,29 @@ impl Contact {
     /// infinite at a sharp edge.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        let (profile, edge) = self.profile.face(self.history.edge());
-        normal::pressure(profile, &self.elasticity, &edge, &StressRadius::new(radius.abs()))
+        let at = StressRadius::new(radius.abs());
+        let face = self.indenter.on_face(self.history.edge());
+        face.map_or(f64::NAN, |(face, edge)| normal::pressure(face, &self.elasticity, &edge, &at))
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
-        let (profile, edge) = self.profile.face(self.history.edge());
+        let Some((face, edge)) = self.indenter.on_face(self.history.edge()) else { return vec![f64::NAN; radii.len()] };
         let distances: Vec<f64> = radii.iter().map(|radius| radius.abs()).collect();
-        normal::pressures(profile, &self.elasticity, &edge, &distances)
+        normal::pressures(face, &self.elasticity, &edge, &distances)
     }
 
     /// The shape of the indenter.
     #[must_use]
     pub fn profile(&self) -> &Profile {
-        &self.profile
+        self.indenter.profile()
+    }
+
+    /// That shape, resolved once.
+    #[must_use]
+    pub fn indenter(&self) -> &Indenter {
+        &self.indenter
     }
 
     /// Coulomb's coefficient of friction mu.
@@ -318,7 +310,7 @@ impl Contact {
     /// [`Contact::stiffness_radius`].
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
-        self.profile.edge_radius(self.history.edge())
+        self.indenter.edge_radius(self.history.edge())
     }
 
     /// F_N'/(2 E*), m, the contact radius of the round contact that is as stiff: a where the contact is round.
@@ -354,18 +346,20 @@ impl Contact {
     /// Bytes of RAM that the contact takes, its slip history included.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Contact>() + self.history.heap_bytes()
+        size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes()
     }
 
     /// The summary at the present normal load.
     #[must_use]
     pub fn summary(&self) -> ContactSummary {
-        ContactSummary::of(&self.profile, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
+        ContactSummary::of(&self.indenter, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
     }
 
     /// The summary at the preload of the definition.
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
-        self.initial
+        let (indentation, normal_force) = self.preload;
+        let edge = self.indenter.point(indentation);
+        ContactSummary::of(&self.indenter, &self.elasticity, self.friction, &edge, normal_force)
     }
 }

@@ -50,7 +50,7 @@ fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -
     // Over the root of the distance from the inner radius: next to a flat g rises like a root.
     let over_root = |u: f64| {
         let x = inner + width * u * u;
-        let level = DoubleDouble::from(contact.profile.level(x));
+        let level = DoubleDouble::from(contact.indenter.level(x));
         let [risen, left] = [level - ring.inner.level, ring.outer.level - level];
         let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth));
         2.0 * width * u * integrand(x, risen, left)
@@ -80,9 +80,9 @@ impl Contact {
         if !matches!(path.normal, NormalPath::Indentation { .. }) || here.value() < 0.0 || indentation <= here {
             return None;
         }
-        let ring = Ring::between(self.profile.point(here), self.profile.point(indentation));
+        let ring = Ring::between(self.indenter.point(here), self.indenter.point(indentation));
         let gain = target / self.force_unit() - self.history.force();
-        let begun = self.profile.point(here + (indentation - here) * BEGINNING);
+        let begun = self.indenter.point(here + (indentation - here) * BEGINNING);
         if gain.abs() > ring.depth * begun.radius {
             return None;
         }
@@ -122,7 +122,7 @@ impl Contact {
         panel.sticks = rise.value() > 0.0 && [1.0, -1.0].into_iter().all(|sign| slip(sign) == [false, false]);
         let (lower, upper) = if rise.value() > 0.0 { (start, end.indentation) } else { (end.indentation, start) };
         let lower = if lower.value() > 0.0 { lower } else { DoubleDouble::ZERO };
-        let ring = Ring::between(self.profile.point(lower), self.profile.point(upper));
+        let ring = Ring::between(self.indenter.point(lower), self.indenter.point(upper));
         if panel.sticks {
             self.bend_stuck(path, &mut panel, &ring, (whole.value(), bend));
             return panel;
@@ -135,14 +135,14 @@ impl Contact {
         if [1.0, -1.0].into_iter().all(|sign| bent.map(|way| slips(way, sign, noise)) == slip(sign)) {
             panel.elbow.displacement = self.unscaled(self.history.position() + half + shift);
         }
-        panel.within = area.abs() * self.profile.moments(&ring).width / rise.value().abs();
+        panel.within = area.abs() * self.indenter.moments(&ring).width / rise.value().abs();
         panel
     }
 
     /// The elbow and the errors of a stretch without slip, on which the position advances by `whole`.
     fn bend_stuck(&self, path: &CurvedMove, panel: &mut PathPanel, ring: &Ring, (whole, bend): (f64, f64)) {
         let inner = ring.inner.radius;
-        let touched = self.profile.moments(ring).first;
+        let touched = self.indenter.moments(ring).first;
         let (gained, error) = match (path.tangential, path.normal) {
             (TangentialPath::Displacement { .. }, NormalPath::Force { .. }) => {
                 let lever = over_ring(self, ring, |x, _, left| (2.0 * x - inner) * left);
@@ -165,9 +165,9 @@ impl Contact {
             // In two forces dU/dd = (E*/G*) dF_x/dF_N, and in displacement and indentation, the path is straight.
             _ => return,
         };
-        let middle = self.profile.point(panel.elbow.indentation);
+        let middle = self.indenter.point(panel.elbow.indentation);
         let (low, high) = (Ring::between(ring.inner, middle), Ring::between(middle, ring.outer));
-        let (low_moments, high_moments) = (self.profile.moments(&low), self.profile.moments(&high));
+        let (low_moments, high_moments) = (self.indenter.moments(&low), self.indenter.moments(&high));
         let (low_mean, high_mean) = (low_moments.first / low.depth, high_moments.first / high.depth);
         let share = low_moments.width + high_mean - low_mean;
         if share > 0.0 {

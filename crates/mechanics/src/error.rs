@@ -98,8 +98,8 @@ pub enum Error {
         /// The first number at which it is.
         index: usize,
     },
-    /// A part of a sum that is known by its load curve alone: only surfaces add up.
-    #[error("part {part} of the sum is known only by its load curve: only surfaces can be added up")]
+    /// A part of a sum that is known by its load curve alone, or along a line: only surfaces of revolution add up.
+    #[error("part {part} of the sum is no surface of revolution: only such surfaces can be added up")]
     NoSurface {
         /// Its index.
         part: usize,

@@ -32,13 +32,13 @@ impl Contact {
         // Just below the limit the low digits of the product decide how much still sticks.
         let room = (DoubleDouble::from(normal_force) * self.friction - DoubleDouble::from(target.abs())).value()
             / self.force_unit();
-        let edge = self.profile.point(indentation);
+        let edge = self.indenter.point(indentation);
         let history = &self.history;
         let position = history.position();
         if !history.in_contact() || indentation > history.edge().level {
-            let from = if history.in_contact() { *history.edge() } else { self.profile.point(DoubleDouble::ZERO) };
+            let from = if history.in_contact() { *history.edge() } else { self.indenter.point(DoubleDouble::ZERO) };
             let touched = Ring::between(from, edge);
-            let stiffness = from.radius + self.profile.moments(&touched).first / touched.depth;
+            let stiffness = from.radius + self.indenter.moments(&touched).first / touched.depth;
             let change = (wanted - history.force()) / stiffness;
             if change.abs() <= touched.depth {
                 return position + DoubleDouble::from(change);
@@ -50,7 +50,7 @@ impl Contact {
             let held = history.pieces().partition_point(|piece| piece.inner.level < indentation);
             let neutral = held.checked_sub(1).map_or(DoubleDouble::ZERO, |top| {
                 let line = &history.pieces()[top].line;
-                history.force_below(top) - line.slope * load(&self.profile, &self.cut(top, held, &edge))
+                history.force_below(top) - line.slope * load(&self.indenter, &self.cut(top, held, &edge))
             });
             let change = (DoubleDouble::from(wanted) - neutral).value();
             let front = SlipFront { edge, sign: change.signum(), held, missing: change.abs(), room };
@@ -77,19 +77,19 @@ impl Contact {
             let ring = self.cut(index, held, &edge);
             let line = &history.pieces()[index].line;
             let closing = 1.0 + sign * line.slope.value();
-            let gain = closing * load(&self.profile, &ring);
+            let gain = closing * load(&self.indenter, &ring);
             if gain < missing && index > 0 {
                 missing -= gain;
                 continue;
             }
             let level = if missing <= 0.5 * gain {
-                ring.outer.level - DoubleDouble::from(depth_for(&self.profile, &ring, false, missing / closing))
+                ring.outer.level - DoubleDouble::from(depth_for(&self.indenter, &ring, false, missing / closing))
             } else {
                 // Towards the far limit slip reaches the centre at mu F_N; for pieces further out the force inside them
                 // is summed.
                 let spare =
                     if index == 0 && sign * wanted > 0.0 { room } else { self.spare_below(index, &edge, sign, wanted) };
-                ring.inner.level + DoubleDouble::from(depth_for(&self.profile, &ring, true, spare / closing))
+                ring.inner.level + DoubleDouble::from(depth_for(&self.indenter, &ring, true, spare / closing))
             };
             // There the stuck value w - W meets the bound sign (d - y) - W.
             return reference + (edge.level - level) * sign - line.at(level);
@@ -101,7 +101,7 @@ impl Contact {
     /// By how much int w dx would pass `wanted` if slip reached the inner end of piece `index`, m^2.
     fn spare_below(&self, index: usize, edge: &Point, sign: f64, wanted: f64) -> f64 {
         let beyond = Ring::between(self.history.pieces()[index].inner, *edge);
-        let full = self.history.force_below(index) * sign + DoubleDouble::from(load(&self.profile, &beyond));
+        let full = self.history.force_below(index) * sign + DoubleDouble::from(load(&self.indenter, &beyond));
         (full - DoubleDouble::from(sign * wanted)).value()
     }
 }

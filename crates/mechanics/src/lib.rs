@@ -47,6 +47,8 @@
 //! |---|---|
 //! | [`elasticity`] | which two moduli do the bodies have together? |
 //! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
+//! | [`Indenter`] | what does a contact ask of a profile, resolved once? |
+//! | `limit` | how stiff is a spring, and how far may it be carried? |
 //! | `cells` | how are g and its integrals computed for any shape, in cells of radii with one series each? |
 //! | `normal` | how do indentation, contact radius, normal force and pressure follow from each other? |
 //! | `slip_history` | what is left of the path, what does a move change, and how much work does it dissipate? |
@@ -83,6 +85,8 @@ mod error;
 mod extrema;
 pub mod fatigue;
 mod force_control;
+mod indenter;
+mod limit;
 mod line_surface;
 mod moves;
 mod normal;
@@ -114,6 +118,7 @@ pub use contact::Contact;
 pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use elasticity::{Body, Elasticity};
 pub use error::{CurveFault, Error, TableFault, UnsupportedMove};
+pub use indenter::Indenter;
 pub use normal::{ContactSummary, Preload};
 pub use numerics::double_double::DoubleDouble;
 pub use packed::ENGINE;

@@ -12,6 +12,7 @@
 
 use std::borrow::Cow;
 use std::f64::consts::FRAC_2_PI;
+use std::sync::Arc;
 
 use super::profile::{LineContact, Ring, StressRadius};
 use crate::contact::Contact;
@@ -35,10 +36,13 @@ pub(super) struct Zone {
 
 impl Contact {
     /// This contact, or the round one whose stresses over r are those of a line contact over x.
-    pub(super) fn face(&self) -> Cow<'_, Contact> {
-        let Some(line) = self.profile.line() else { return Cow::Borrowed(self) };
+    /// None where no surface is known.
+    pub(super) fn face(&self) -> Option<Cow<'_, Contact>> {
+        let (Some(line), Some(face)) = (self.indenter.line(), self.indenter.line_face()) else {
+            return self.indenter.face().map(|_| Cow::Borrowed(self));
+        };
         let history = self.history.moved_to(|level| line.face_point(level));
-        Cow::Owned(Contact { profile: line.shared_face(), history, ..self.clone_without_history() })
+        Some(Cow::Owned(Contact { indenter: Arc::clone(face), history, ..*self }))
     }
 
     /// Centre of the stuck zone of the half-width c, m, in the present contact.
@@ -50,13 +54,13 @@ impl Contact {
     /// It follows from the radii and the load of the state, and needs no history.
     #[must_use]
     pub fn stick_centre(&self, state: &State) -> Option<f64> {
-        let line = self.profile.line().filter(|line| line.bulk().is_some())?;
+        let line = self.indenter.line().filter(|line| line.bulk().is_some())?;
         Some(line.zone_centre(state.normal_force, state.contact_radius, state.stick_radius))
     }
 
     /// The line contact of a bulk stress that moves its zones.
     pub(super) fn eccentric(&self) -> Option<&LineContact> {
-        self.profile.line().filter(|line| line.reach_of_bulk(self.normal_force) != 0.0)
+        self.indenter.line().filter(|line| line.reach_of_bulk(self.normal_force) != 0.0)
     }
 
     /// The rings of a line contact from the edge inward: inner zone, outer zone and -dw/dy.
@@ -74,12 +78,12 @@ impl Contact {
 
     /// What the surface's fields depend on at a place, m: the distance from the axis, or the x of a line contact.
     pub(super) fn coordinate(&self, [x, y, _]: &[f64; 3]) -> f64 {
-        if self.profile.line().is_some() { *x } else { x.hypot(*y) }
+        if self.indenter.line().is_some() { *x } else { x.hypot(*y) }
     }
 
     /// The level, m, of the zone whose end is at a coordinate: c with e(c) + c = x, or e(c) - c = x on the other side.
     pub(super) fn level_at(&self, coordinate: f64) -> f64 {
-        let Some(line) = self.profile.line() else { return self.profile.level(coordinate) };
+        let Some(line) = self.indenter.line() else { return self.indenter.level(coordinate) };
         let (reach, edge) = (line.reach_of_bulk(self.normal_force), self.contact_radius());
         let bend = if edge > 0.0 { 4.0 * reach / (edge * edge) } else { 0.0 };
         let (from, bend) = if coordinate >= reach { (coordinate - reach, -bend) } else { (reach - coordinate, bend) };
@@ -88,8 +92,8 @@ impl Contact {
 
     /// The distances from the middle, m, at which the zone of a level, m, ends.
     pub(super) fn circles_of(&self, level: f64) -> [f64; 2] {
-        let radius = self.profile.contact_radius(level);
-        let centre = self.profile.line().map_or(0.0, |line| self.zone_centre(line, radius));
+        let radius = self.indenter.contact_radius(level);
+        let centre = self.indenter.line().map_or(0.0, |line| self.zone_centre(line, radius));
         [radius + centre, radius - centre].map(f64::abs)
     }
 
@@ -175,13 +179,13 @@ impl Contact {
         self.history.pieces().first().map_or(0.0, |core| core.line.at(DoubleDouble::ZERO).value())
     }
 
-    /// The largest kernel over a ring of this contact's levels: at its inner radius.
+    /// The largest kernel over a ring of this contact's levels: at its inner radius. Zero without a face, where no stress
+    /// errs.
     pub(super) fn face_kernel(&self, ring: &Ring, at: Option<f64>) -> f64 {
-        let Some(line) = self.profile.line() else {
-            return self.profile.kernel(&at.map_or(StressRadius::of_point(&ring.inner), StressRadius::new), ring);
-        };
-        let [inner, outer] = [ring.inner, ring.outer].map(|point| line.face_point(point.level));
-        line.face().kernel(&StressRadius::of_point(&inner), &Ring::between(inner, outer))
+        let [inner, outer] = [ring.inner, ring.outer].map(|point| self.indenter.on_face(&point));
+        let (Some((face, inner)), Some((_, outer))) = (inner, outer) else { return 0.0 };
+        let at = at.map_or(StressRadius::of_point(&inner), StressRadius::new);
+        face.kernel(&at, &Ring::between(inner, outer))
     }
 }
 

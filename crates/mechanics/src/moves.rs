@@ -5,6 +5,7 @@ use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::contact::Contact;
 use crate::curved_move::DEFAULT_TOLERANCE;
 use crate::error::Error;
+use crate::limit::Coulomb;
 use crate::numerics::double_double::DoubleDouble;
 use crate::range;
 use crate::state::{Move, Normal, Tangential};
@@ -101,7 +102,7 @@ impl Contact {
 
     fn normal_path(&self, step: &Move) -> Result<NormalPath, Error> {
         let here = self.history.edge().level;
-        if step.normal.is_some() && self.profile.line().is_some_and(|line| line.bulk().is_some()) {
+        if step.normal.is_some() && self.indenter.line().is_some_and(|line| line.bulk().is_some()) {
             return Err(Error::BulkNeedsConstantLoad);
         }
         Ok(match step.normal {
@@ -125,7 +126,7 @@ impl Contact {
     pub(super) fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
         range::INDENTATION.check(indentation)?;
         if indentation > 0.0 {
-            range::CONTACT_RADIUS.check(self.profile.check_radius(self.profile.contact_radius(indentation))?)?;
+            range::CONTACT_RADIUS.check(self.indenter.check_radius(self.indenter.contact_radius(indentation))?)?;
         }
         Ok(())
     }
@@ -177,7 +178,7 @@ impl Contact {
     pub(super) fn advance(&mut self, point: &PathPoint) {
         self.displacement = point.displacement;
         self.normal_force = point.normal_force;
-        let scaled_work = self.history.advance(&self.profile, point.indentation, self.scaled(point.displacement));
+        let scaled_work = self.history.advance(&Coulomb(&self.indenter), point.indentation, self.scaled(point.displacement));
         let scale = self.scale();
         let work = 2.0 * self.elasticity.g_star() * scale * scale * scaled_work;
         self.dissipated = self.dissipated + DoubleDouble::from(work);

@@ -13,6 +13,7 @@ use crate::elasticity::Elasticity;
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest_of, within};
+use crate::indenter::Indenter;
 use crate::profile::Profile;
 
 /// Radii of the first scan for the largest pressure.
@@ -64,7 +65,7 @@ pub struct ContactSummary {
 impl ContactSummary {
     /// The summary of an indentation and its normal force, N.
     pub(super) fn of(
-        profile: &Profile,
+        indenter: &Indenter,
         elasticity: &Elasticity,
         friction: f64,
         edge: &Point,
@@ -75,10 +76,10 @@ impl ContactSummary {
             e_star: elasticity.e_star(),
             g_star: elasticity.g_star(),
             indentation,
-            contact_radius: profile.edge_radius(edge),
+            contact_radius: indenter.edge_radius(edge),
             normal_force,
-            max_pressure: max_pressure(profile, elasticity, edge),
-            semi_axes: match profile {
+            max_pressure: max_pressure(indenter, elasticity, edge),
+            semi_axes: match indenter.profile() {
                 Profile::Ellipsoid(ellipsoid) => Some(ellipsoid.semi_axes(indentation)),
                 _ => None,
             },
@@ -135,40 +136,40 @@ pub(super) fn mean_pressure(normal_force: f64, contact_radius: f64) -> f64 {
 }
 
 /// The ring from the centre to `edge`: the whole contact.
-pub(super) fn whole(profile: &Profile, edge: &Point) -> Ring {
-    Ring::between(profile.point(DoubleDouble::ZERO), *edge)
+pub(super) fn whole(indenter: &Indenter, edge: &Point) -> Ring {
+    Ring::between(indenter.point(DoubleDouble::ZERO), *edge)
 }
 
 /// int X dy, m^2, over a ring: its share of F_N/(2 E*).
-pub(super) fn load(profile: &Profile, ring: &Ring) -> f64 {
+pub(super) fn load(indenter: &Indenter, ring: &Ring) -> f64 {
     if ring.depth <= 0.0 {
         return 0.0;
     }
-    ring.inner.radius * ring.depth + profile.moments(ring).first
+    ring.inner.radius * ring.depth + indenter.moments(ring).first
 }
 
 /// Normal force, N, of the contact that ends at `edge`.
-pub(super) fn force(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> f64 {
-    2.0 * elasticity.e_star() * load(profile, &whole(profile, edge))
+pub(super) fn force(indenter: &Indenter, elasticity: &Elasticity, edge: &Point) -> f64 {
+    2.0 * elasticity.e_star() * load(indenter, &whole(indenter, edge))
 }
 
 /// Indentation, m, that carries `normal_force`, N.
-pub(super) fn indentation(profile: &Profile, elasticity: &Elasticity, normal_force: f64) -> f64 {
-    profile.indentation_for(normal_force / (2.0 * elasticity.e_star()))
+pub(super) fn indentation(indenter: &Indenter, elasticity: &Elasticity, normal_force: f64) -> f64 {
+    indenter.indentation_for(normal_force / (2.0 * elasticity.e_star()))
 }
 
 /// Indentation, m, at which the contact has this radius, m.
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for a radius that is not that of one load alone: below a flat end, or from a vertical edge on.
-pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Error> {
+pub(super) fn indentation_at(indenter: &Indenter, radius: f64) -> Result<f64, Error> {
     let allowed = |allowed: String| Error::OutOfRange { quantity: Quantity::ContactRadius, value: radius, allowed };
-    profile.check_radius(radius)?;
-    let flat = profile.contact_radius(0.0);
+    indenter.check_radius(radius)?;
+    let flat = indenter.contact_radius(0.0);
     if radius < flat {
         return Err(allowed(format!("from the radius of the flat end, {} m, on", short(flat))));
     }
-    if let Some(rim) = profile.rim_radius()
+    if let Some(rim) = indenter.rim_radius()
         && radius >= rim
     {
         return Err(allowed(format!(
@@ -176,59 +177,55 @@ pub(super) fn indentation_at(profile: &Profile, radius: f64) -> Result<f64, Erro
             short(rim)
         )));
     }
-    Ok(profile.level_at_edge(radius))
+    Ok(indenter.level_at_edge(radius))
 }
 
 /// Pressure, Pa, at radius r; zero outside the contact.
-pub(super) fn pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point, at: &StressRadius) -> f64 {
-    let ring = whole(profile, edge);
+pub(super) fn pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Point, at: &StressRadius) -> f64 {
+    let ring = whole(indenter, edge);
     if ring.depth <= 0.0 {
         return 0.0;
     }
-    elasticity.e_star() / std::f64::consts::PI * profile.kernel(at, &ring)
+    elasticity.e_star() / std::f64::consts::PI * indenter.kernel(at, &ring)
 }
 
 /// [`pressure`] at each of `radii`, m: faster than one by one.
-pub(super) fn pressures(profile: &Profile, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
-    let ring = whole(profile, edge);
+pub(super) fn pressures(indenter: &Indenter, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
+    let ring = whole(indenter, edge);
     if ring.depth <= 0.0 {
         return vec![0.0; radii.len()];
     }
     let unit = elasticity.e_star() / std::f64::consts::PI;
-    profile.kernel_sums(&[(ring, 1.0)], radii).into_iter().map(|sum| unit * sum).collect()
+    indenter.kernel_sums(&[(ring, 1.0)], radii).into_iter().map(|sum| unit * sum).collect()
 }
 
 /// The largest pressure, Pa; `None` where it is infinite or not known.
-pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
-    if !profile.has_stress_field() {
+pub(super) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
+    let (face, edge) = indenter.on_face(edge)?;
+    let at = |at: &StressRadius| pressure(face, elasticity, &edge, at);
+    let mut spikes = face.singular().filter(|spike| spike.square <= edge.square);
+    if edge.level.value() > 0.0 && (face.is_upright(&edge) || spikes.any(|spike| at(&spike).is_infinite())) {
         return None;
     }
-    let (profile, edge) = profile.face(edge);
-    let at = |radius: f64| pressure(profile, elasticity, &edge, &StressRadius::new(radius));
-    let inside = |radius: &f64| *radius <= edge.radius;
-    let spikes = profile.singular_radii().into_iter().filter(inside).chain([edge.radius]);
-    if edge.level.value() > 0.0 && spikes.map(at).any(f64::is_infinite) {
-        return None;
-    }
-    if profile.falls(0.0, edge.radius).least > 0.0 {
-        return Some(at(0.0));
+    if face.falls(0.0, edge.radius).least > 0.0 {
+        return Some(at(&StressRadius::new(0.0)));
     }
     // A scan, then a search about its largest value: a profile that is steep outside has its maximum off the
     // centre. Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which
     // may be narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too,
     // and distinguished by their squares.
-    let pressure_at = |square: DoubleDouble| {
-        pressure(profile, elasticity, &edge, &StressRadius { radius: square.value().sqrt(), square })
-    };
     let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
     let level = |index: usize| edge.level * (index as f64 / LEVEL_SCAN as f64);
     let mut squares: Vec<DoubleDouble> = (0..PRESSURE_SCAN)
         .map(|index| DoubleDouble::square_of(radius(index)))
-        .chain((0..LEVEL_SCAN).map(|index| profile.point(level(index)).square))
+        .chain((0..LEVEL_SCAN).map(|index| face.point(level(index)).square))
         .collect();
     squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
     squares.push(edge.square);
-    let inside = |square: DoubleDouble| if square < edge.square { pressure_at(square) } else { 0.0 };
+    let inside = |square: DoubleDouble| {
+        let place = StressRadius { radius: square.value().sqrt(), square };
+        if square < edge.square { at(&place) } else { 0.0 }
+    };
     Some(largest_of(&squares, 1, 1e-7, inside).1)
 }
 
@@ -236,13 +233,13 @@ pub(super) fn max_pressure(profile: &Profile, elasticity: &Elasticity, edge: &Po
 ///
 /// The load is concave in the depth from the outside and convex from the inside, so Newton's step from the side of the
 /// smaller slope never passes the root: it converges from any start, even where X vanishes and the slope with it.
-pub(super) fn depth_for(profile: &Profile, ring: &Ring, upward: bool, wanted: f64) -> f64 {
+pub(super) fn depth_for(indenter: &Indenter, ring: &Ring, upward: bool, wanted: f64) -> f64 {
     let part = |depth: f64| {
         let depth = DoubleDouble::from(depth);
         if upward {
-            Ring::between(ring.inner, profile.point(ring.inner.level + depth))
+            Ring::between(ring.inner, indenter.point(ring.inner.level + depth))
         } else {
-            Ring::between(profile.point(ring.outer.level - depth), ring.outer)
+            Ring::between(indenter.point(ring.outer.level - depth), ring.outer)
         }
     };
     if wanted <= 0.0 {
@@ -252,6 +249,6 @@ pub(super) fn depth_for(profile: &Profile, ring: &Ring, upward: bool, wanted: f6
     let start = if start_radius > 0.0 { (wanted / start_radius).min(ring.depth) } else { ring.depth };
     within([0.0, ring.depth], start, |depth| {
         let tried = part(depth);
-        (load(profile, &tried) - wanted, if upward { tried.outer.radius } else { tried.inner.radius })
+        (load(indenter, &tried) - wanted, if upward { tried.outer.radius } else { tried.inner.radius })
     })
 }

@@ -64,7 +64,7 @@ impl Contact {
         if let Some(line) = self.eccentric() {
             return self.eccentric_shears(line, &[radius])[0];
         }
-        self.face().shear_at(&StressRadius::new(radius.abs()))
+        self.face().map_or(f64::NAN, |face| face.shear_at(&StressRadius::new(radius.abs())))
     }
 
     /// [`Contact::shear`] at each of `radii`, m: faster than one by one.
@@ -81,13 +81,16 @@ impl Contact {
             return self.eccentric_shears(line, radii);
         }
         let distances: Vec<f64> = radii.iter().map(|radius| radius.abs()).collect();
-        self.face().shears_at(&StressRadius::of_all(&distances))
+        match self.face() {
+            Some(face) => face.shears_at(&StressRadius::of_all(&distances)),
+            None => vec![f64::NAN; radii.len()],
+        }
     }
 
     /// [`Contact::shears`] at radii whose squares have all their digits.
     pub(super) fn shears_at(&self, radii: &[StressRadius]) -> Vec<f64> {
         let rings: Vec<_> = self.shear_rings().rev().collect();
-        self.shears_of(self.profile.kernel_sums_at(&rings, radii))
+        self.shears_of(self.indenter.kernel_sums_at(&rings, radii))
     }
 
     /// Shear stresses, Pa, of weighted sums of kernels.
@@ -107,14 +110,18 @@ impl Contact {
     }
 
     pub(super) fn shear_at(&self, at: &StressRadius) -> f64 {
+        if self.indenter.rim_radius().is_some() {
+            // At a vertical edge the rings together have a sign, and each is infinite.
+            return self.shears_at(&[*at])[0];
+        }
         let mut sum = 0.0;
         for (ring, line) in self.history.rings() {
-            if ring.outer.radius < at.radius {
+            if ring.outer.square < at.square {
                 break;
             }
             let slope = line.slope.value();
             if slope.abs() > 0.0 {
-                sum -= slope * self.profile.kernel(at, &ring);
+                sum -= slope * self.indenter.kernel(at, &ring);
             }
         }
         self.shear_unit() * sum
@@ -154,13 +161,13 @@ impl Contact {
         if let Some(line) = self.eccentric() {
             return self.eccentric_residual(line, keep_going);
         }
-        self.face().round_residual(keep_going)
+        self.face().map_or(Some(Residual::of(f64::NAN, Vec::new(), false)), |face| face.round_residual(keep_going))
     }
 
     fn round_residual(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
-        let edge = self.history.edge().radius;
-        let spikes = self.profile.singular_radii().into_iter().filter(|&radius| radius <= edge).chain([edge]);
-        let mut radii: Vec<StressRadius> = [0.0].into_iter().chain(spikes).map(StressRadius::new).collect();
+        let edge = StressRadius::of_point(self.history.edge());
+        let spikes = self.indenter.singular().filter(|spike| spike.square <= edge.square).chain([edge]);
+        let mut radii: Vec<StressRadius> = [StressRadius::new(0.0)].into_iter().chain(spikes).collect();
         let others = radii.len();
         let found = self.extrema(&keep_going)?;
         radii.extend(found.places);
@@ -173,7 +180,7 @@ impl Contact {
             }
             // By the sum that the search has made, so that the rings are gathered once.
             let sums = found.sum.as_ref().map(|sum| sum.sums(some));
-            shears.extend(self.shears_of(sums.unwrap_or_else(|| self.profile.kernel_sums_at(&rings, some))));
+            shears.extend(self.shears_of(sums.unwrap_or_else(|| self.indenter.kernel_sums_at(&rings, some))));
         }
         let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
         let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();

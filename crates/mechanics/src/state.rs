@@ -147,7 +147,7 @@ impl Contact {
         match self.history.slip_from() {
             None => (self.contact_radius(), Regime::Stick),
             Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
-            Some(start) if start.radius < edge.radius => (self.profile.edge_radius(start), Regime::PartialSlip),
+            Some(start) if start.square < edge.square => (self.indenter.edge_radius(start), Regime::PartialSlip),
             Some(_) => (self.contact_radius(), Regime::Stick),
         }
     }

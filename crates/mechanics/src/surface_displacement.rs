@@ -35,7 +35,7 @@ impl Contact {
     #[must_use]
     pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
         let (edge, shift) = (self.history.edge(), self.history.shift().value());
-        if let Some(line) = self.profile.line() {
+        if let Some(line) = self.indenter.line() {
             let zones: Vec<_> = self.zones(line).collect();
             let middle = self.scale() * (self.core() + shift);
             return radii.iter().map(|&x| middle - self.friction * self.lag(line, &zones, x)).collect();
@@ -66,7 +66,7 @@ impl Contact {
             let slip = self.displacement.value() + 0.0;
             return radii.iter().map(|radius| touched(radius).then_some(slip)).collect();
         }
-        if let Some(line) = self.profile.line() {
+        if let Some(line) = self.indenter.line() {
             let zones: Vec<_> = self.zones(line).collect();
             let middle = self.scale() * ((self.history.position() - self.history.shift()).value() - self.core());
             let slip = |x: f64| middle + self.friction * self.lag(line, &zones, x) + 0.0;
@@ -87,7 +87,7 @@ impl Contact {
         let ends = [(core, DoubleDouble::ZERO), (top, self.history.edge().level)];
         let [centre, edge] = ends.map(|(piece, level)| piece.line.at(level).value());
         let rings: Vec<_> = self.history.rings().rev().map(|(ring, line)| (ring, line.slope.value())).collect();
-        self.profile.displacements(&rings, (centre, edge), &StressRadius::of_all(radii))
+        self.indenter.displacements(&rings, (centre, edge), &StressRadius::of_all(radii))
     }
 }
 

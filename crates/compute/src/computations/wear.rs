@@ -1,7 +1,9 @@
 //! `wear`: the limiting shape that fretting wear leaves at a constant indentation.
 
+use std::sync::Arc;
+
 use stickslip_mechanics::wear::{WornContact, WornTable};
-use stickslip_mechanics::{Error, Move, Tangential, in_unit};
+use stickslip_mechanics::{Error, Indenter, Move, Tangential, in_unit};
 use stickslip_wire::profile::TabulatedProfile;
 use stickslip_wire::{Profile, WearReply, WearRequest, WornForce, WornPressure, WornProfileError, WornShape};
 
@@ -55,7 +57,7 @@ impl Computation for Wear {
 
     /// The profile, the table of the limit with its series, and the curves.
     fn bytes((request, setup): &Task<Self>) -> usize {
-        let (places, profile) = (setup.profile.singular_radii().len() + 3, &request.contact.profile);
+        let (places, profile) = (Indenter::new(Arc::clone(&setup.profile)).singular_radii().len() + 3, &request.contact.profile);
         let points = places * TABLE_POINTS + profile.points().min(TABLE_KNOTS);
         of_shape(profile) + points * SERIES + request.points() * 5 * NUMBER
     }
@@ -136,7 +138,7 @@ fn limiting_profile(
         let error = WornProfileError { normal_force: normal_force_error, rise_width };
         return (Some(Profile::Tabulated(table)), Some(error), None);
     }
-    let reason = if contact.profile().rim_radius().is_some() {
+    let reason = if contact.indenter().rim_radius().is_some() {
         "the profile ends in a vertical edge, which a table does not have".to_owned()
     } else {
         let width = in_unit(worn.worn_radius() - worn.stick_radius(), "m");

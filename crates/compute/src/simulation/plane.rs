@@ -105,7 +105,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
     for state in &solution.states {
         let size = state.displacement[0].hypot(state.displacement[1]);
         let gross_slip = scale * state.indentation.max(0.0);
-        far.reach_to(size, gross_slip, solution.pressed().profile(), state.contact_radius);
+        far.reach_to(size, gross_slip, solution.pressed().indenter(), state.contact_radius);
     }
     let warnings = warnings_at(solution.pressed(), largest, indentation, excess)
         .into_iter()

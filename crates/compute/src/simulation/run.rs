@@ -87,7 +87,7 @@ pub(super) fn run<S: Solver>(
     let path_error = path_error.max(solver.path_error());
     accuracy.force_error += path_error - solver.path_error();
     // A table, which may have noise, has no vertical edge.
-    let indentation = summary.indentation.max(solver.exact().profile().level_at_edge(largest));
+    let indentation = summary.indentation.max(solver.exact().indenter().level_at_edge(largest));
     let excess = excess_error(path_error, simulation.tolerance, curved);
     Ok(SimulateReply {
         contact: summary.into(),

@@ -1,6 +1,6 @@
 //! Warnings about results that are valid nevertheless. Each code has its paragraph in `docs/warnings.md`.
 
-use stickslip_mechanics::in_unit;
+use stickslip_mechanics::{Indenter, in_unit};
 
 use crate::prelude::*;
 
@@ -38,7 +38,7 @@ pub fn new_warnings(contact: &Contact, before: f64, largest: f64, excess_error: 
         return Vec::new();
     }
     let at =
-        |radius: f64, error: Option<f64>| warnings_at(contact, radius, contact.profile().level_at_edge(radius), error);
+        |radius: f64, error: Option<f64>| warnings_at(contact, radius, contact.indenter().level_at_edge(radius), error);
     let known = at(before, None);
     let mut found = at(largest, excess_error);
     found.retain(|warning| known.iter().all(|old| old.code != warning.code));
@@ -69,18 +69,18 @@ impl FarMove {
     /// is.
     pub fn reach(&mut self, solver: &impl Solver) {
         let (displacement, gross_slip) = (solver.displacement(), solver.gross_slip_displacement());
-        self.reach_to(displacement, gross_slip, solver.exact().profile(), solver.contact_radius());
+        self.reach_to(displacement, gross_slip, solver.exact().indenter(), solver.contact_radius());
     }
 
     /// The same of a move that led to this displacement, m, and contact radius, m.
-    pub(super) fn reach_to(&mut self, displacement: f64, gross_slip: f64, profile: &Profile, contact_radius: f64) {
+    pub(super) fn reach_to(&mut self, displacement: f64, gross_slip: f64, indenter: &Indenter, contact_radius: f64) {
         let (size, before) = (displacement.abs(), std::mem::replace(&mut self.displacement, displacement));
         let is_farther = size > self.farthest.map_or(0.0, |(farthest, _)| farthest.abs());
         let moved = displacement.to_bits() != before.to_bits();
         if moved
             && is_farther
             && size > MAX_GROSS_SLIPS * gross_slip
-            && size > MAX_PART_OF_LENGTH * length_scale(profile, contact_radius)
+            && size > MAX_PART_OF_LENGTH * length_scale(indenter, contact_radius)
         {
             self.farthest = Some((displacement, gross_slip));
         }
@@ -101,8 +101,8 @@ impl FarMove {
 
 /// The length by which a profile is large or small, m: its radius of curvature or where it ends, and at least the
 /// contact radius.
-fn length_scale(profile: &Profile, contact_radius: f64) -> f64 {
-    let lengths = [profile.curvature_radius(), profile.limit_radius(), profile.rim_radius()];
+fn length_scale(indenter: &Indenter, contact_radius: f64) -> f64 {
+    let lengths = [indenter.profile().curvature_radius(), indenter.limit_radius(), indenter.rim_radius()];
     lengths.into_iter().flatten().fold(contact_radius, f64::max)
 }
 

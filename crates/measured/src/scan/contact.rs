@@ -6,7 +6,7 @@
 //! moves along a maximum, so that its place does not matter.
 
 use stickslip_mechanics::profile::{Profile, Ring, RoundedPunch, Sphere, StressRadius};
-use stickslip_mechanics::{Contact, Elasticity, Preload, Setup};
+use stickslip_mechanics::{Contact, Elasticity, Indenter, Preload, Setup};
 
 use super::curve::Curve;
 use super::{Error, Estimate, ScanFit, StandardErrors};
@@ -35,7 +35,7 @@ pub struct ContactEstimate {
 /// The shape (r - b)_+^2/2: each curvature adds that of its interval's beginning, and takes away that of its end.
 struct Step {
     b: f64,
-    shape: Profile,
+    shape: Indenter,
 }
 
 impl Step {
@@ -45,7 +45,7 @@ impl Step {
         } else {
             Profile::Sphere(Sphere::new(1.0)?)
         };
-        Ok(Step { b, shape })
+        Ok(Step { b, shape: Indenter::new(shape) })
     }
 
     /// g in a contact of radius a.
@@ -117,7 +117,7 @@ impl ScanFit {
             .map_or(0.0, |index| radii[index]);
 
         let from = by_curvature(&steps(&self.curve)?, |step| step.functionals(a, at));
-        let slope = self.profile.slope(a);
+        let slope = contact.indenter().slope(a);
         let edge = slope / ((a - at) * (a + at)).sqrt();
         // Per curvature: the change of radius, then those of all else.
         let changes: Vec<[f64; 4]> = from
@@ -155,7 +155,7 @@ impl ScanFit {
         }
         let reach = self.table.radius[self.table.radius.len() - 1];
         let Ok([level, load, _]) = self.at_end(reach) else { return error.into() };
-        let s = self.profile.slope(reach * (1.0 - 1e-9)) / reach;
+        let s = self.profile.indenter().slope(reach * (1.0 - 1e-9)) / reach;
         let needed = match preload {
             Preload::NormalForce(force) => {
                 (reach.powi(3) + 3.0 * (force / (2.0 * elasticity.e_star()) - load) / s).cbrt()

@@ -99,7 +99,7 @@ fn table(curve: Curve) -> Result<Option<(Column, Profile, Curve)>, Error> {
     let radius: Vec<f64> = halves.chain([curve.end()]).collect();
     let height: Vec<f64> = radius.iter().map(|&r| curve.height(r)).collect();
     match Tabulated::new(&radius, &height).map(Profile::Tabulated) {
-        Ok(profile) if profile.check_radius(curve.end() * (1.0 - 1e-9)).is_ok() => {
+        Ok(profile) if profile.indenter().check_radius(curve.end() * (1.0 - 1e-9)).is_ok() => {
             Ok(Some((Column { radius, height }, profile, curve)))
         }
         Ok(_) | Err(Refusal::NotConvexEnough { .. } | Refusal::Table { .. }) => Ok(None),

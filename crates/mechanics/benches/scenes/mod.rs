@@ -64,7 +64,7 @@ pub fn shapes() -> Vec<(&'static str, Profile)> {
     let sum = |other| Profile::Sum(Sum::new(vec![sphere(), other]).expect(VALID));
     let mut shapes: Vec<_> =
         families().iter().map(|family| (family.name, (family.make)(&family.example()).expect(VALID))).collect();
-    shapes.retain(|(_, profile)| profile.rim_radius().is_none());
+    shapes.retain(|(_, profile)| profile.indenter().rim_radius().is_none());
     shapes.extend([
         ("power 2.7", power(2.7, 1e4)),
         ("sphere and fourth power", sum(power(4.0, 1e6))),

@@ -318,6 +318,9 @@ impl WeightedCells<'_> {
 impl Rim {
     /// Adds what it does at a radius.
     fn add(&self, kernel: Kernel, at: &StressRadius, sum: &mut SumAndSize) {
+        if self.levels.abs() <= 0.0 {
+            return;
+        }
         let share = kernel.of_place(self.square, self.radius, at);
         *sum = (sum.0 + self.levels * share, sum.1 + self.size * share.abs());
     }

@@ -73,8 +73,8 @@ pub(super) fn cells<S: Shape + ?Sized>(
     let kinks = shape.kinks();
     let (mut cells, mut floor, end) = (Vec::new(), 0.0, DoubleDouble::square_of(end));
     for (index, &kink) in kinks.iter().enumerate() {
-        let base = DoubleDouble::square_of(kink.radius);
-        let next = kinks.get(index + 1).map(|next| DoubleDouble::square_of(next.radius));
+        let base = kink.at.square;
+        let next = kinks.get(index + 1).map(|next| next.at.square);
         let top = next.filter(|next| *next < end).unwrap_or(end);
         if top <= base {
             break;
@@ -101,8 +101,8 @@ pub(super) fn cells<S: Shape + ?Sized>(
             width
         } else {
             let singular = if let Some(below) = index.checked_sub(1) {
-                (base - DoubleDouble::square_of(kinks[below].radius)).value()
-            } else if kink.radius > 0.0 {
+                (base - kinks[below].at.square).value()
+            } else if kink.at.radius > 0.0 {
                 base.value()
             } else {
                 f64::INFINITY
@@ -118,7 +118,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
             let (cell, next) = above.further(reached, fits(reached + GROWTH * reached) - reached);
             if !cell.depth.is_finite() {
                 // No contact is so large.
-                break;
+                return Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, None) });
             }
             cells.push(cell);
             reached = fits(next);
@@ -127,7 +127,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
             return None;
         }
     }
-    Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, end) })
+    Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, Some(end)) })
 }
 
 /// How wide the cell above a kink may be, in squares, m^2, of the whole up to the next one, for a singularity beneath
@@ -155,7 +155,7 @@ impl<S: Shape + ?Sized> Above<'_, S> {
             }
         };
         let (Fit { terms, .. }, width) = narrowed(widest, fit);
-        (Cell::new(self.kink.radius, self.base, width.sqrt(), &terms, self.kink.powers), width)
+        (Cell::new(self.kink.at.radius, self.base, width.sqrt(), &terms, self.kink.powers), width)
     }
 
     /// The cell whose inner end lies `below` beyond the kink, in squares, m^2, at most so wide, and where it ends.
@@ -168,13 +168,13 @@ impl<S: Shape + ?Sized> Above<'_, S> {
         };
         let (Fit { terms, .. }, width) = narrowed(widest, fit);
         let square = self.base + DoubleDouble::from(below);
-        (Cell::new(self.kink.radius, square, width.sqrt(), &terms, Powers::Odd), below + width)
+        (Cell::new(self.kink.at.radius, square, width.sqrt(), &terms, Powers::Odd), below + width)
     }
 
     /// The series over 0..1 of gamma over a divisor; a place gives t, m, and the divisor.
     fn fit<const N: usize>(&self, points: &Points<N>, place: impl Fn(f64) -> (f64, f64)) -> Fit {
         let places = points.places(0.0, 1.0).map(place);
-        let gammas = places.map(|(t, _)| self.shape.gamma(self.kink.radius, t));
+        let gammas = places.map(|(t, _)| self.shape.gamma(self.kink.at.radius, t));
         let largest = gammas.iter().fold(0.0_f64, |largest, gamma| largest.max(gamma.abs()));
         let values: [f64; N] = std::array::from_fn(|lane| gammas[lane] / places[lane].1);
         let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(a, b), &value| (a.min(value), b.max(value)));

@@ -16,6 +16,7 @@ pub(crate) mod kernel;
 mod lookup;
 pub(crate) mod moment_tree;
 mod near_part;
+pub(crate) mod parabola;
 pub(crate) mod ring;
 pub(crate) mod shape;
 pub(crate) mod span;
@@ -73,8 +74,6 @@ pub(crate) struct Cells {
     tree: MomentTree,
     /// The kernel's sources, made when a stress is first asked for.
     sources: OnceLock<ClusterTree<Multipole>>,
-    /// Where g is not analytic, m.
-    pub(crate) kinks: Vec<f64>,
     /// How steep the cells before each are, and all of them, made when first asked for.
     steepness: OnceLock<Vec<Steepness>>,
     /// The least radius at which a kernel is not that of the centre.
@@ -83,12 +82,12 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// By cells of which each ends at the square where the next begins. Levels and loads are counted from the first;
-    /// without any, all up to the square `end`, m^2, is flat.
-    pub(crate) fn new(mut cells: Vec<Cell>, end: DoubleDouble) -> Cells {
+    /// By cells of which each ends at the square where the next begins, and the last at `end`, m^2, if that is known
+    /// with all its digits. Levels and loads are counted from the first; without any, all up to the end is flat.
+    pub(crate) fn new(mut cells: Vec<Cell>, end: Option<DoubleDouble>) -> Cells {
         let mut top = Top {
-            square: end,
-            radius: end.value().sqrt(),
+            square: end.unwrap_or_default(),
+            radius: 0.0,
             level: DoubleDouble::ZERO,
             load: DoubleDouble::ZERO,
             centre: 0.0,
@@ -106,14 +105,13 @@ impl Cells {
                 top.centre += cell.kernel::<false>(&StressRadius::new(0.0), &cell_span(cell, top.square, top.radius));
             }
         }
-        let mut kinks: Vec<f64> = cells.iter().map(|cell| cell.kink).filter(|&kink| kink > 0.0).collect();
-        kinks.dedup_by(|a, b| a.to_bits() == b.to_bits());
+        top.square = end.unwrap_or(top.square);
+        top.radius = top.square.value().sqrt();
         Cells {
             by_radius: Lookup::new(cells.iter().map(|cell| cell.radius), top.radius),
             by_level: Lookup::new(cells.iter().map(|cell| cell.level.value()), top.level.value()),
             tree: MomentTree::new(totals.into_iter()),
             sources: OnceLock::new(),
-            kinks,
             steepness: OnceLock::new(),
             floor: StressRadius::new(0.0),
             top,
@@ -240,16 +238,6 @@ impl Cells {
         // Squares that were rounded with their radius have lost what the depth of a thin ring has.
         let rounded = cell.kink <= 0.0 && high - low <= THIN * outer.square.value();
         cell.gap(low, high, depth, rounded)
-    }
-
-    /// The kinks below a radius, m, above zero.
-    pub(crate) fn kinks_below(&self, radius: f64) -> &[f64] {
-        &self.kinks[..self.kinks.partition_point(|&kink| kink < radius)]
-    }
-
-    /// The largest of them; zero if there is none.
-    pub(crate) fn kink_below(&self, radius: f64) -> f64 {
-        self.kinks_below(radius).last().copied().unwrap_or(0.0)
     }
 
     /// The moments over a span.

@@ -1,6 +1,9 @@
 //! A shape as its cells are made of it.
 
+use std::sync::Arc;
+
 use super::Cells;
+use super::ring::StressRadius;
 use super::stages::Stages;
 
 /// The uneven power from which on what is not analytic beside a lower power is rounding: the terms of a Chebyshev
@@ -51,26 +54,35 @@ impl Powers {
 /// Where g is not analytic in x^2: an end of a flat, a knot, the tip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Kink {
-    /// Radius, m.
-    pub(crate) radius: f64,
+    pub(crate) at: StressRadius,
     /// What g is above it.
     pub(crate) powers: Powers,
 }
 
+/// The kinks of a shape from the innermost on; copies share them, because a table has many.
+pub(crate) type Kinks = Arc<[Kink]>;
+
+impl Kink {
+    /// The kink at a radius, m.
+    pub(crate) fn new(radius: f64, powers: Powers) -> Kink {
+        Kink { at: StressRadius::new(radius), powers }
+    }
+}
+
 /// The kinks of several shapes added up. A kink within another shape keeps the least power of the two.
-pub(crate) fn united(parts: impl Iterator<Item = Vec<Kink>>) -> Vec<Kink> {
-    let mut kinks: Vec<Kink> = parts.flatten().collect();
-    kinks.sort_by(|a, b| a.radius.total_cmp(&b.radius));
+pub(crate) fn united(parts: &[Kinks]) -> Kinks {
+    let mut kinks: Vec<Kink> = parts.iter().flat_map(|kinks| kinks.iter().copied()).collect();
+    kinks.sort_by(|a, b| a.at.radius.total_cmp(&b.at.radius));
     let mut united: Vec<Kink> = Vec::with_capacity(kinks.len());
     for kink in kinks {
         match united.last_mut() {
-            Some(last) if last.radius.to_bits() == kink.radius.to_bits() => last.powers = last.powers.and(kink.powers),
+            Some(last) if last.at.radius.to_bits() == kink.at.radius.to_bits() => last.powers = last.powers.and(kink.powers),
             // What lies beneath goes on as an odd function of t.
             Some(_) => united.push(Kink { powers: Powers::All(1).and(kink.powers), ..kink }),
             None => united.push(kink),
         }
     }
-    united
+    united.into()
 }
 
 /// gamma at t, m, above `base`, m, of what begins at the kink `own`, m, by its gamma above that: zero below it.
@@ -119,7 +131,7 @@ pub(crate) enum EndKind {
 /// A body of revolution z = f(r), by g(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr. All else follows from its cells.
 pub(crate) trait Shape {
     /// Its kinks from the innermost on, where the surface leaves the plane; none of a flat punch.
-    fn kinks(&self) -> Vec<Kink>;
+    fn kinks(&self) -> Kinks;
 
     /// g at the radius x, m.
     fn level(&self, x: f64) -> f64;

@@ -58,7 +58,7 @@ pub fn best_load(
             stopped.set(true);
             return Err(Error::Interrupted);
         }
-        let pressed = contact.pressed_without_summary(normal_force)?;
+        let pressed = contact.pressed(normal_force)?;
         // A force that the load just holds is that of gross slip.
         let cycle = SteadyCycle::driven(&pressed, drive, compliance)
             .unwrap_or_else(|_| SteadyCycle::of(&pressed, pressed.gross_slip_displacement()));
@@ -103,6 +103,6 @@ pub fn best_load(
 /// # Ok::<(), Error>(())
 /// ```
 pub fn work_under_load(contact: &Contact, normal_force: f64, drive: Drive, compliance: f64) -> Result<f64, Error> {
-    let pressed = contact.pressed_without_summary(normal_force)?;
+    let pressed = contact.pressed(normal_force)?;
     Ok(SteadyCycle::driven(&pressed, drive, compliance)?.dissipated_energy())
 }

@@ -89,13 +89,13 @@ impl SteadyCycle<'_> {
     /// The ends of the panels of the angle from 0 to pi, and whether they resolve every kink.
     fn panels(&self, count: usize) -> (Vec<f64>, bool) {
         let widest = TURN / (count + 1) as f64;
-        let (profile, ring) = (&self.contact.profile, &self.ring);
+        let (profile, ring) = (&self.contact.indenter, &self.ring);
         let angle = |depth: f64| 2.0 * depth.max(0.0).sqrt().atan2((ring.depth - depth).max(0.0).sqrt());
         let rim = profile.rim_radius();
         let inside = |radius: &f64| *radius > ring.inner.radius && *radius <= ring.outer.radius;
         let kinks: Vec<f64> = profile.knots_below(ring.outer.radius).into_iter().chain(rim).filter(inside).collect();
         // The kinks of a load curve are at levels.
-        if kinks.len() > MOST_KINKS || !profile.has_stress_field() {
+        if kinks.len() > MOST_KINKS || profile.face().is_none() {
             let mut ends = vec![0.0, PI];
             split(&mut ends, widest.min(PI / PANELS));
             return (ends, false);
@@ -189,9 +189,9 @@ impl<'a, 'b> Branch<'a, 'b> {
         } else {
             ring.inner.level + DoubleDouble::from(standing)
         };
-        let point = contact.profile.point(level);
+        let point = contact.indenter.point(level);
         let (scale, unit) = (contact.scale(), contact.force_unit());
-        let carried = |inner, outer| unit * load(&contact.profile, &Ring::between(inner, outer));
+        let carried = |inner, outer| unit * load(&contact.indenter, &Ring::between(inner, outer));
         let forces = if cycle.force_driven || cycle.compliance > 0.0 {
             [carried(point, ring.outer), carried(ring.inner, point)]
         } else {

@@ -73,9 +73,9 @@ impl OscillatingCycle {
             tangent_stiffness: 2.0
                 * contact.elasticity.g_star()
                 * contact
-                    .profile
+                    .indenter
                     .line()
-                    .map_or(states[0].contact_radius, |_| contact.profile.radius(states[0].indentation)),
+                    .map_or(states[0].contact_radius, |_| contact.indenter.radius(states[0].indentation)),
             sliding_ratio,
             stick_radius: after.iter().map(|state| state.stick_radius).fold(f64::INFINITY, f64::min),
             regime: after.iter().map(|state| state.regime).fold(Regime::Stick, Regime::max),

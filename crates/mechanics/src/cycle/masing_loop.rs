@@ -34,7 +34,7 @@ impl<'a> FirstLoading<'a> {
         if displacement <= 0.0 {
             return 0.0;
         }
-        let (profile, edge) = (&self.contact.profile, *self.contact.history.edge());
+        let (profile, edge) = (&self.contact.indenter, *self.contact.history.edge());
         let inner = profile.point(edge.level - self.contact.scaled(DoubleDouble::from(displacement)));
         self.contact.force_unit() * load(profile, &Ring::between(inner, edge))
     }

@@ -127,16 +127,16 @@ impl<'a> SteadyCycle<'a> {
                 return Err(Error::ForceExceedsFriction { target: amplitude, limit, part: 1.0 });
             }
             Drive::Force(amplitude) => {
-                let all = whole(&contact.profile, contact.history.edge());
+                let all = whole(&contact.indenter, contact.history.edge());
                 let unit = 2.0 * contact.friction * contact.elasticity.e_star();
                 let room = (DoubleDouble::from(contact.normal_force) * contact.friction
                     - DoubleDouble::from(amplitude.abs()))
                 .value();
                 // From the nearer end, so that neither a small force nor one just below the limit loses its digits.
                 let depth = if amplitude.abs() <= room {
-                    DoubleDouble::from(depth_for(&contact.profile, &all, false, amplitude.abs() / unit))
+                    DoubleDouble::from(depth_for(&contact.indenter, &all, false, amplitude.abs() / unit))
                 } else {
-                    edge - DoubleDouble::from(depth_for(&contact.profile, &all, true, room / unit))
+                    edge - DoubleDouble::from(depth_for(&contact.indenter, &all, true, room / unit))
                 };
                 SteadyCycle { force: amplitude.abs(), ..SteadyCycle::new(contact, depth, 0.0) }
             }
@@ -147,17 +147,17 @@ impl<'a> SteadyCycle<'a> {
     fn new(contact: &'a Contact, depth: DoubleDouble, slide: f64) -> SteadyCycle<'a> {
         let edge = *contact.history.edge();
         let ring = if edge.level.value() > 0.0 {
-            Ring::between(contact.profile.point(edge.level - depth), edge)
+            Ring::between(contact.indenter.point(edge.level - depth), edge)
         } else {
             Ring::default()
         };
-        let moments = if ring.depth > 0.0 { contact.profile.moments(&ring) } else { Moments::default() };
+        let moments = if ring.depth > 0.0 { contact.indenter.moments(&ring) } else { Moments::default() };
         SteadyCycle {
             contact,
             compliance: 0.0,
             force_driven: false,
             displacement: contact.unscaled(depth).value() + slide,
-            force: contact.force_unit() * load(&contact.profile, &ring),
+            force: contact.force_unit() * load(&contact.indenter, &ring),
             ring,
             moments,
             slide,
@@ -169,8 +169,8 @@ impl<'a> SteadyCycle<'a> {
         let edge = *contact.history.edge();
         let (own, machine) = (contact.scale(), compliance * contact.force_unit());
         let beyond = |depth: f64| {
-            let ring = Ring::between(contact.profile.point(edge.level - DoubleDouble::from(depth)), edge);
-            let moved = own * depth + machine * load(&contact.profile, &ring);
+            let ring = Ring::between(contact.indenter.point(edge.level - DoubleDouble::from(depth)), edge);
+            let moved = own * depth + machine * load(&contact.indenter, &ring);
             (moved - amplitude, own + machine * ring.inner.radius)
         };
         let start = amplitude / (own + machine * edge.radius);
@@ -267,7 +267,7 @@ impl<'a> SteadyCycle<'a> {
         }
         // The branch from the upper end has lost F0 where its ring carries F0/2: beyond half the depth by what the
         // inner half of the ring carries less than the outer.
-        let profile = &self.contact.profile;
+        let profile = &self.contact.indenter;
         let middle = profile.point(self.ring.inner.level + DoubleDouble::from(self.ring.depth).halved());
         let (low, high) = (Ring::between(self.ring.inner, middle), Ring::between(middle, self.ring.outer));
         let inner = profile.moments(&low);
@@ -279,7 +279,7 @@ impl<'a> SteadyCycle<'a> {
     /// Radius of the part that never slips, m.
     #[must_use]
     pub fn stick_radius(&self) -> f64 {
-        if self.regime() == Regime::GrossSlip { 0.0 } else { self.contact.profile.edge_radius(&self.ring.inner) }
+        if self.regime() == Regime::GrossSlip { 0.0 } else { self.contact.indenter.edge_radius(&self.ring.inner) }
     }
 
     /// Which parts slip.
@@ -320,7 +320,7 @@ impl<'a> SteadyCycle<'a> {
             return vec![0.0; radii.len()];
         }
         let indentation = edge;
-        let mut turned = contact.clone().unmoved();
+        let mut turned = contact.clone().without_history();
         let displacement = DoubleDouble::from(self.displacement);
         turned.advance(&PathPoint { indentation, normal_force: contact.normal_force, displacement });
         let work = |(slip, pressure): (Option<f64>, f64)| {

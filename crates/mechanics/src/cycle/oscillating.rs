@@ -122,7 +122,7 @@ impl Oscillation {
     }
 
     fn check(&self, contact: &Contact) -> Result<(), Error> {
-        if contact.profile.line().is_some_and(|line| line.bulk().is_some()) {
+        if contact.indenter.line().is_some_and(|line| line.bulk().is_some()) {
             return Err(Error::BulkNeedsConstantLoad);
         }
         match self.load.amplitude {
@@ -150,7 +150,7 @@ impl Oscillation {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<OscillatingCycle, Error> {
         self.check(contact)?;
-        let mut moving = contact.clone().unmoved();
+        let mut moving = contact.clone().without_history();
         self.step_to(contact, &mut moving, 0.0, None)?;
         let unit = self.force_unit(contact);
         let (mut before, mut end) = self.lap(contact, &mut moving, (steps, count), keep_going)?;
@@ -215,7 +215,7 @@ impl Oscillation {
         match self.load.amplitude {
             Normal::Indentation(amplitude) => amplitude * swing,
             Normal::NormalForce(amplitude) => {
-                let radius = contact.profile.radius(self.load_at(contact, angle).0.value());
+                let radius = contact.indenter.radius(self.load_at(contact, angle).0.value());
                 amplitude * swing / (2.0 * contact.elasticity.e_star() * radius)
             }
         }

@@ -3,7 +3,8 @@
 use std::cell::{Cell, OnceCell};
 
 use crate::contact::Contact;
-use crate::profile::{Ring, RingSum, StressRadius};
+use crate::indenter::RingSum;
+use crate::profile::{Ring, StressRadius};
 
 /// A derivative below this share of the terms that it is the sum of is zero: the kernels of some families are good to
 /// 1e-13.
@@ -76,7 +77,7 @@ impl<'c, 'p> Derivative<'c, 'p> {
         let sum = self.sum.get_or_init(|| {
             let mut rings: Vec<(Ring, f64)> = self.contact.shear_rings().collect();
             rings.reverse();
-            self.contact.profile.ring_sum(&rings)
+            self.contact.indenter.ring_sum(&rings)
         });
         let found = sum.slopes(radii, |terms| self.pace.counts_on(terms));
         found.into_iter().map(|(sum, size)| significant(sum, size)).collect()

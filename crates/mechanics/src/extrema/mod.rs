@@ -12,9 +12,10 @@ mod derivative;
 mod interval;
 mod settled;
 
-use super::profile::{RingSum, StressRadius};
+use super::profile::StressRadius;
+use crate::indenter::RingSum;
+use crate::cells::shape::Kink;
 use crate::contact::Contact;
-use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::between;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
@@ -48,8 +49,8 @@ impl Contact {
         let known: Vec<Known> = (0..pieces.len()).map(|index| settled.known(index, from(index).radius)).collect();
         // A long table has many, which no settled interval needs.
         let searched = known.iter().any(|known| *known != Known::Sign);
-        let knots = if searched { self.profile.knots_below(edge.radius) } else { Vec::new() };
-        let singular = self.profile.singular_radii();
+        let knots = self.indenter.kinks();
+        let knots = &knots[..knots.partition_point(|knot| searched && knot.at.square < edge.square)];
         let pace = Pace::new(&keep_going);
         let derivative = Derivative::new(self, &pace);
         let mut search = Search { derivative: &derivative, sign: 0.0, places: Vec::new() };
@@ -71,37 +72,36 @@ impl Contact {
             let to = StressRadius::of_point(&outer);
             let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
             let last =
-                if to.square >= edge.square && self.history.edge().level.value() > self.profile.level(edge.radius) {
+                if to.square >= edge.square && self.indenter.is_upright(self.history.edge()) {
                     (EndBehaviour::Logarithm, 0.0)
                 } else {
                     (EndBehaviour::InverseRoot((beyond.square - outer.square).value()), -bend)
                 };
-            let begins = knots.partition_point(|&knot| knot <= from.radius);
-            let ends = knots.partition_point(|&knot| knot < to.radius).max(begins);
+            let begins = knots.partition_point(|knot| knot.at.square <= from.square);
+            let ends = knots.partition_point(|knot| knot.at.square < to.square).max(begins);
             let sparse = ends - begins > SPARSE_ABOVE;
             let within = (begins..ends).map(|index| {
-                let knot = knots[index];
-                let at = StressRadius::new(knot);
-                let rim = singular.contains(&knot);
+                let Kink { at, powers } = knots[index];
+                let rim = powers.singular();
                 // At the same distance on either side a logarithm has the same value: one sample serves both.
-                let beside = DoubleDouble::square_of(knot) * (1.0 + KNOT_FLOOR);
+                let beside = at.square * (1.0 + KNOT_FLOOR);
                 let infinite = if rim {
                     derivative.at(&at)
                 } else if sparse {
-                    derivative.at(&StressRadius { radius: knot, square: beside })
+                    derivative.at(&StressRadius { square: beside, ..at })
                 } else {
                     0.0
                 };
                 if rim && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
-                    let next = if index + 1 < ends { DoubleDouble::square_of(knots[index + 1]) } else { to.square };
+                    let next = if index + 1 < ends { knots[index + 1].at.square } else { to.square };
                     let end = EndBehaviour::Inverse((next - at.square).value());
                     (at, (end, -infinite), (end, infinite))
                 } else {
                     (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
             });
-            let mut start = self.start(index, &from, &knots, &derivative);
+            let mut start = self.start(index, &from, knots, &derivative);
             let mut inner = from;
             for (position, (outer, end, next)) in within.chain([(to, last, last)]).enumerate() {
                 if !pace.goes_on() {
@@ -129,7 +129,10 @@ impl Contact {
             return None;
         }
         let Search { mut places, .. } = search;
-        let spike = |place: &StressRadius| singular.contains(&place.radius) || place.radius >= edge.radius;
+        let singular: Vec<StressRadius> = self.indenter.singular().collect();
+        let spike = |place: &StressRadius| {
+            place.square >= edge.square || singular.iter().any(|spike| spike.square == place.square)
+        };
         places.retain(|place| !spike(place) && place.radius > 0.0);
         Some(Extrema { places, sum: derivative.into_sum() })
     }
@@ -139,14 +142,14 @@ impl Contact {
         &self,
         index: usize,
         from: &StressRadius,
-        knots: &[f64],
+        knots: &[Kink],
         derivative: &Derivative<'_, '_>,
     ) -> (EndBehaviour, f64) {
         let sign = derivative.at(from);
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
-            if !slips || self.profile.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse(0.0) }
-        } else if knots.iter().any(|knot| knot.to_bits() == from.radius.to_bits()) {
+            if !slips || self.indenter.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse(0.0) }
+        } else if knots.iter().any(|knot| knot.at.square == from.square) {
             return (EndBehaviour::Logarithm, 0.0);
         } else {
             EndBehaviour::Smooth

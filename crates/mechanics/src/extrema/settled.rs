@@ -58,7 +58,7 @@ impl Settled<'_> {
     /// Knowledge about the derivative in the ring of a piece from the radius `from`, m, on.
     pub(super) fn known(&self, index: usize, from: f64) -> Known {
         let Outward { bends, slopes } = self.pieces[index];
-        let profile = &self.contact.profile;
+        let profile = &self.contact.indenter;
         let (outer, edge) = (self.contact.history.ring(index).outer.radius, self.contact.history.edge().radius);
         let to_edge = LazyCell::new(|| profile.falls(from, edge));
         if bends && to_edge.least > 0.0 || slopes && profile.falls(from, outer).least > 0.0 {
@@ -80,7 +80,7 @@ impl Contact {
         let rings: Vec<Ring> = (0..pieces.len()).map(|index| self.history.ring(index)).collect();
         let share = |index: usize| slope(index).abs() * rings[index].depth;
         // At a vertical edge stresses are infinite, whatever lies inside it.
-        let upright = rings.last().is_some_and(|ring| self.profile.edge_depth(ring) > 0.0);
+        let upright = rings.last().is_some_and(|ring| self.indenter.edge_depth(ring) > 0.0);
         let mut settled = vec![Outward { bends: false, slopes: false }; pieces.len()];
         let mut beyond = Outward { bends: true, slopes: true };
         for index in (0..pieces.len()).rev() {

@@ -230,7 +230,7 @@ impl Study<'_> {
 
     /// Where the stress of the surface may be infinite, m.
     fn singular_radii(&self) -> Vec<f64> {
-        let profile = self.cycle.start().profile();
+        let profile = self.cycle.start().indenter();
         profile.singular_radii().into_iter().chain(profile.rim_radius()).collect()
     }
 

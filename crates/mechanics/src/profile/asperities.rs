@@ -6,15 +6,16 @@
 //! gaps lie farther below it than it is wide are one series of X', the others are summed one by one; whole cells are
 //! summed by a [`MomentTree`]. So a ring costs two cells and the logarithm of their number.
 //!
-//! One asperity alone is a [`Sphere`].
+//! One asperity alone is a parabola.
 
 use std::collections::VecDeque;
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::curve_family::CurveFamily;
-use super::{Moments, Ring, Sphere};
+use super::{Moments, Ring};
 use crate::cells::moment_tree::MomentTree;
+use crate::cells::parabola::Parabola;
 use crate::error::{CurveFault, Error};
 use crate::numerics::chebyshev::{self, TWENTY};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
@@ -44,7 +45,7 @@ pub struct Asperities(pub(super) Count);
 /// One asperity, or several.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Count {
-    One(Sphere),
+    One(Parabola),
     Many(Arc<Set>),
 }
 
@@ -106,7 +107,7 @@ impl Asperities {
             radii.iter().try_for_each(|&number| range.check(number).map(drop))?;
         }
         if let (1, &[radius]) = (gaps.len(), radii) {
-            return Ok(Asperities(Count::One(Sphere::of_curvature(radius))));
+            return Ok(Asperities(Count::One(Parabola { curvature_radius: radius })));
         }
         let mut set: Vec<(f64, f64)> =
             gaps.iter().zip(radii.iter().cycle()).map(|(&gap, radius)| (gap, radius.sqrt())).collect();

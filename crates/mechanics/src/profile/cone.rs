@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Powers, Shape};
+use crate::cells::shape::{End, Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -36,8 +36,8 @@ impl Cone {
 }
 
 impl Shape for Cone {
-    fn kinks(&self) -> Vec<Kink> {
-        vec![Kink { radius: 0.0, powers: Powers::All(0) }]
+    fn kinks(&self) -> Kinks {
+        Kinks::from([Kink::new(0.0, Powers::All(0))])
     }
 
     fn level(&self, x: f64) -> f64 {

@@ -10,7 +10,7 @@ use super::{InterpolationError, Moments, Ring};
 use crate::numerics::double_double::DoubleDouble;
 
 /// The functions of a load curve.
-pub(super) trait CurveFamily {
+pub(crate) trait CurveFamily {
     /// X(y), m.
     fn radius_at(&self, level: DoubleDouble) -> f64;
 

@@ -10,7 +10,7 @@
 //! [`Elasticity::along_ellipse`](crate::Elasticity::along_ellipse). Partial slip follows from the load curve by
 //! Ciavarella (1998) and Jäger (1998), which is exact for a circle alone.
 
-use super::Sphere;
+use crate::cells::parabola::Parabola;
 use crate::error::Error;
 use crate::numerics::roots::turning;
 use crate::range;
@@ -28,7 +28,7 @@ pub enum Direction {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ellipsoid {
     /// The ball with the same load curve.
-    pub(super) ball: Sphere,
+    pub(super) ball: Parabola,
     /// Squares of the semi-axes along x and y over the indentation, m.
     squares: [f64; 2],
     /// kappa along the major axis and 1 - kappa along the minor one, for the direction of the motion.
@@ -52,7 +52,7 @@ impl Ellipsoid {
         let shares = [square, square * axis_ratio * axis_ratio];
         let along_major = (direction == Direction::X) == (x >= y);
         Ok(Ellipsoid {
-            ball: Sphere::of_curvature(square * mean * mean),
+            ball: Parabola { curvature_radius: square * mean * mean },
             squares: if x >= y { shares } else { [shares[1], shares[0]] },
             shear_share: if along_major { kappa } else { 1.0 - kappa },
         })

@@ -4,7 +4,7 @@
 //! equator, where the sphere is vertical, has few digits for its level.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, EndKind, Kink, Powers, Shape};
+use crate::cells::shape::{End, EndKind, Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// Where contacts end, over the radius.
@@ -44,8 +44,8 @@ impl ExactSphere {
 }
 
 impl Shape for ExactSphere {
-    fn kinks(&self) -> Vec<Kink> {
-        vec![Kink { radius: 0.0, powers: Powers::Odd }]
+    fn kinks(&self) -> Kinks {
+        Kinks::from([Kink::new(0.0, Powers::Odd)])
     }
 
     fn level(&self, x: f64) -> f64 {

@@ -2,7 +2,7 @@
 //! is depth/sqrt(b^2 - r^2) (Boussinesq 1885).
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, EndKind, Kink, Shape};
+use crate::cells::shape::{End, EndKind, Kinks, Shape};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -33,8 +33,8 @@ impl FlatPunch {
 }
 
 impl Shape for FlatPunch {
-    fn kinks(&self) -> Vec<Kink> {
-        Vec::new()
+    fn kinks(&self) -> Kinks {
+        Kinks::from([])
     }
 
     fn level(&self, _x: f64) -> f64 {

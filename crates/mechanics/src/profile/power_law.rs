@@ -1,9 +1,10 @@
 //! Power law f = c r^n: g = B x^n with B = kappa c, kappa = sqrt(pi) Gamma(n/2 + 1)/Gamma((n + 1)/2) (Galin 1946;
 //! Sneddon 1965).
 
-use super::{DoubleDouble, Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Powers, Shape};
+use super::{Error, Family, Parameter, Profile, range};
+use crate::cells::shape::{End, Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
+use crate::numerics::double_double::DoubleDouble;
 
 /// The largest whole exponent of which one term is a series.
 const MOST: u16 = 24;
@@ -81,13 +82,13 @@ fn kappa(exponent: f64) -> f64 {
 }
 
 impl Shape for PowerLaw {
-    fn kinks(&self) -> Vec<Kink> {
+    fn kinks(&self) -> Kinks {
         let powers = match self.order {
             Some(2) => Powers::Odd,
             Some(order) => Powers::All(usize::from(order) - 1),
             None => Powers::Uneven(self.exponent),
         };
-        vec![Kink { radius: 0.0, powers }]
+        Kinks::from([Kink::new(0.0, powers)])
     }
 
     fn level(&self, x: f64) -> f64 {

@@ -5,7 +5,7 @@
 //! b, so all stresses are finite.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -47,9 +47,8 @@ impl RoundedCone {
 }
 
 impl Shape for RoundedCone {
-    fn kinks(&self) -> Vec<Kink> {
-        let kink = |radius, powers| Kink { radius, powers };
-        vec![kink(0.0, Powers::Odd), kink(self.tip_radius, Powers::All(1))]
+    fn kinks(&self) -> Kinks {
+        Kinks::from([Kink::new(0.0, Powers::Odd), Kink::new(self.tip_radius, Powers::All(1))])
     }
 
     fn level(&self, x: f64) -> f64 {

@@ -5,7 +5,7 @@
 //! - atan u), u = t/b.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
 use crate::cells::stages::Stages;
 use crate::numerics::angle::angles;
 
@@ -48,8 +48,8 @@ impl RoundedPunch {
 }
 
 impl Shape for RoundedPunch {
-    fn kinks(&self) -> Vec<Kink> {
-        vec![Kink { radius: self.flat_radius, powers: Powers::All(2) }]
+    fn kinks(&self) -> Kinks {
+        Kinks::from([Kink::new(self.flat_radius, Powers::All(2))])
     }
 
     fn level(&self, x: f64) -> f64 {

@@ -3,8 +3,10 @@
 //! A flat punch among the parts ends the sum in its vertical edge. The g of a table among them may fall where the
 //! others make up for it.
 
+use std::sync::Arc;
+
 use super::{Error, Profile, Tabulated, range};
-use crate::cells::shape::{End, EndKind, Kink, Shape, united};
+use crate::cells::shape::{End, EndKind, Kinks, Shape, united};
 use crate::cells::stages::Stages;
 use crate::numerics::roots::turning;
 
@@ -15,7 +17,7 @@ const ROUNDING_OF_SLOPE: f64 = 1e-12;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sum {
     parts: Vec<Profile>,
-    kinks: Vec<Kink>,
+    kinks: Kinks,
     end: Option<End>,
     stages: Stages,
 }
@@ -43,10 +45,10 @@ impl Sum {
             }
         }
         range::PARTS.check(flat.len() as f64)?;
-        if let Some(part) = flat.iter().position(|part| !part.has_stress_field()) {
+        if let Some(part) = flat.iter().position(|part| !part.is_round()) {
             return Err(Error::NoSurface { part });
         }
-        let kinks = united(flat.iter().filter_map(Profile::shape).map(Shape::kinks));
+        let kinks = united(&flat.iter().filter_map(Profile::shape).map(Shape::kinks).collect::<Vec<_>>());
         let end = flat.iter().filter_map(end_in_sum).reduce(|a, b| if b.radius < a.radius { b } else { a });
         let mut sum = Sum { parts: flat, kinks, end, stages: Stages::new() };
         if let Some(radius) = sum.first_fall(keep_going)? {
@@ -54,7 +56,7 @@ impl Sum {
         }
         let top = sum.end.filter(|_| sum.falling_tables().next().is_some()).map(|end| sum.level(end.radius));
         if top.is_some_and(|top| top <= 0.0) {
-            return Err(Error::NotConvexEnough { radius: sum.kinks.first().map_or(0.0, |kink| kink.radius) });
+            return Err(Error::NotConvexEnough { radius: sum.kinks.first().map_or(0.0, |kink| kink.at.radius) });
         }
         Ok(sum)
     }
@@ -122,8 +124,8 @@ fn end_in_sum(part: &Profile) -> Option<End> {
 }
 
 impl Shape for Sum {
-    fn kinks(&self) -> Vec<Kink> {
-        self.kinks.clone()
+    fn kinks(&self) -> Kinks {
+        Arc::clone(&self.kinks)
     }
 
     fn level(&self, x: f64) -> f64 {

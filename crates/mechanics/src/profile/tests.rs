@@ -50,7 +50,7 @@ fn profiles() -> Vec<Profile> {
         (family.make)(&family.parameters.iter().map(number).collect::<Vec<_>>()).unwrap()
     };
     let mut profiles: Vec<Profile> = [0.6, 1.3, 2.7, 7.0, 12.5, 60.0].map(power).into();
-    profiles.extend(families().iter().map(of_family).filter(|profile| profile.rim_radius().is_none()));
+    profiles.extend(families().iter().map(of_family).filter(|profile| profile.indenter().rim_radius().is_none()));
     profiles.push(table());
     profiles.push(sum(vec![worn(), power(2.7), rounded(), ball()]));
     profiles.push(sum(vec![sphere(), sharp(), power(17.0)]));
@@ -72,7 +72,7 @@ fn graded(low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
 /// An integral over radii, by t above each kink, of f(kink, t).
 fn between_kinks(profile: &Profile, low: f64, high: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
     let t = |kink: f64, x: f64| ((x - kink) * (x + kink)).max(0.0).sqrt();
-    let kinks: Vec<f64> = [0.0].into_iter().chain(profile.knots_below(high)).chain([high]).collect();
+    let kinks: Vec<f64> = [0.0].into_iter().chain(profile.indenter().knots_below(high)).chain([high]).collect();
     let piece = |pair: &[f64]| {
         let (start, end) = (pair[0].max(low), pair[1].max(low));
         if end > start { graded(t(pair[0], start), t(pair[0], end), |t| f(pair[0], t)) } else { 0.0 }
@@ -94,12 +94,12 @@ proptest! {
     ) {
         let profiles = profiles();
         let profile = index.get(&profiles);
-        let flat = profile.radius(0.0);
+        let flat = profile.indenter().radius(0.0);
         let high = flat + (1.05 - flat) * ends.0.max(ends.1);
         let low = thin.map_or(flat + (high - flat) * ends.0.min(ends.1), |power| high * (1.0 - 10f64.powf(power)));
         let low = low.max(flat);
         let shape = profile.shape().unwrap();
-        let point = |x: f64| profile.point(shape.level(x).into());
+        let point = |x: f64| profile.indenter().point(shape.level(x).into());
         let ring = Ring::between(point(low), point(high));
         let (low, high) = (ring.inner.radius, ring.outer.radius);
         let x = |kink: f64, t: f64| kink.hypot(t);
@@ -109,7 +109,7 @@ proptest! {
         let (depth, exact) = (ring.depth, rise(low));
         let allowed = 1e-12 + 4e-15 * ring.outer.level.value() / depth;
         prop_assert!(close(depth, exact, allowed), "{profile:?} {low} {high}: depth {depth} is not {exact}");
-        let moments = profile.moments(&ring);
+        let moments = profile.indenter().moments(&ring);
         let rounding = 1e-11 + 1e-15 * high / (high - low).max(1e-18);
         if thin.is_none() {
             let depth = |kink: f64, t: f64| ring.outer.level.value() - shape.level(x(kink, t));
@@ -119,14 +119,14 @@ proptest! {
         prop_assert!(close(moments.width, high - low, 1e-13 + 4e-16 * high / (high - low)), "{profile:?}: width");
         let r = share * high;
         let at = StressRadius::new(r);
-        let kernel = profile.kernel(&at, &ring);
+        let kernel = profile.indenter().kernel(&at, &ring);
         let q = |kink: f64, t: f64| shape.gamma(kink, t) / ((x(kink, t) - r) * (x(kink, t) + r)).sqrt();
         let exact = if r <= low {
             between_kinks(profile, low, high, q)
         } else {
             // Over v = sqrt(x^2 - r^2) up to the first kink beyond r.
-            let first = profile.knots_below(high).into_iter().find(|kink| *kink > r).unwrap_or(high);
-            let below = profile.knots_below(r.next_up()).last().copied().unwrap_or(0.0);
+            let first = profile.indenter().knots_below(high).into_iter().find(|kink| *kink > r).unwrap_or(high);
+            let below = profile.indenter().knots_below(r.next_up()).last().copied().unwrap_or(0.0);
             let gamma_over_t = |v: f64| {
                 let t = ((r - below) * (r + below) + v * v).sqrt();
                 shape.gamma(below, t) / t
@@ -143,10 +143,10 @@ fn a_punch_that_ends_inside_all_flats_of_a_sum_is_a_punch() {
     let punch = || Profile::FlatPunch(FlatPunch::new(1e-3).unwrap());
     for radius in [1e-3, 2e-3] {
         let sum = sum(vec![flat(radius), punch()]);
-        let ring = |profile: &Profile| Ring::between(profile.point(0.0.into()), profile.point(1e-6.into()));
-        assert_eq!(sum.moments(&ring(&sum)), punch().moments(&ring(&punch())));
+        let ring = |profile: &Profile| Ring::between(profile.indenter().point(0.0.into()), profile.indenter().point(1e-6.into()));
+        assert_eq!(sum.indenter().moments(&ring(&sum)), punch().indenter().moments(&ring(&punch())));
         let at = StressRadius::new(5e-4);
-        assert!((sum.kernel(&at, &ring(&sum)) / punch().kernel(&at, &ring(&punch())) - 1.0).abs() < 1e-15);
+        assert!((sum.indenter().kernel(&at, &ring(&sum)) / punch().indenter().kernel(&at, &ring(&punch())) - 1.0).abs() < 1e-15);
     }
 }
 
@@ -161,7 +161,7 @@ fn what_is_said_to_rise_concavely_does() {
     let mut claims = 0;
     for profile in profiles {
         for inner in [0.0, 0.1, 0.2, 0.3] {
-            if !profile.falls(inner, 1.0).concavely {
+            if !profile.indenter().falls(inner, 1.0).concavely {
                 continue;
             }
             claims += 1;

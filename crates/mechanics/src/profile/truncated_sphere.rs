@@ -4,7 +4,7 @@
 //! log-infinite there.
 
 use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -40,8 +40,8 @@ impl TruncatedSphere {
 }
 
 impl Shape for TruncatedSphere {
-    fn kinks(&self) -> Vec<Kink> {
-        vec![Kink { radius: self.flat_radius, powers: Powers::All(0) }]
+    fn kinks(&self) -> Kinks {
+        Kinks::from([Kink::new(self.flat_radius, Powers::All(0))])
     }
 
     fn level(&self, x: f64) -> f64 {

@@ -23,7 +23,7 @@ use std::f64::consts::PI;
 use super::{EvaluationRange, branch_and_bound};
 use crate::contact::Contact;
 use crate::numerics::roots::turning;
-use crate::profile::Profile;
+use crate::indenter::Indenter;
 
 /// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;
@@ -46,9 +46,9 @@ const STEPS: usize = 4_096;
 /// # Ok::<(), Error>(())
 /// ```
 pub fn lower_bound(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<f64> {
-    let face = contact.face();
+    let Some(face) = contact.face() else { return Some(0.0) };
     let contact = &*face;
-    let (profile, edge) = (&*contact.profile, contact.contact_radius());
+    let (profile, edge) = (&*contact.indenter, contact.contact_radius());
     let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
     if vertical || edge <= 0.0 || contact.friction <= 0.0 {
         return Some(0.0);
@@ -72,7 +72,7 @@ struct Grid {
 }
 
 impl Grid {
-    fn new(profile: &Profile, cutoff: f64, edge: f64) -> Grid {
+    fn new(profile: &Indenter, cutoff: f64, edge: f64) -> Grid {
         // Even in the square of the radius.
         let square = |index: usize| edge * edge - (edge * edge - cutoff * cutoff) * index as f64 / STEPS as f64;
         let radii: Vec<f64> = (0..=STEPS).map(|index| square(index).max(0.0).sqrt()).collect();

@@ -14,10 +14,11 @@
 
 use std::cell::OnceCell;
 
+use crate::indenter::Indenter;
 use crate::contact::Contact;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::turning;
-use crate::profile::{Point, Profile, Ring, StressRadius};
+use crate::profile::{Point, Ring, StressRadius};
 
 /// The largest number of reversals: each more takes some eight times as many boxes.
 const MOST_REVERSALS: usize = 8;
@@ -53,7 +54,7 @@ pub(super) fn raise(
     if reversals > MOST_REVERSALS || known <= 0.0 {
         return Some(known);
     }
-    let kernels = Kernels::new(&contact.profile, cutoff, *contact.history.edge());
+    let kernels = Kernels::new(&contact.indenter, cutoff, *contact.history.edge());
     let (mut low, mut high, mut boxes) = (known, f64::INFINITY, BOXES);
     while high - low > CLOSE * low && boxes > 0 {
         let limit = (RISE * low).min(0.5 * (low + high));
@@ -77,7 +78,7 @@ impl KinkRange {
 
 /// K between the nodes of a grid of radii.
 struct Kernels<'a> {
-    profile: &'a Profile,
+    indenter: &'a Indenter,
     /// From the cut-off radius to the edge, with the radii of stress that belong to them.
     nodes: Vec<(Point, StressRadius)>,
     /// For each radius of stress K up to each node; empty where the stress is infinite.
@@ -85,7 +86,7 @@ struct Kernels<'a> {
 }
 
 impl<'a> Kernels<'a> {
-    fn new(profile: &'a Profile, cutoff: f64, edge: Point) -> Kernels<'a> {
+    fn new(profile: &'a Indenter, cutoff: f64, edge: Point) -> Kernels<'a> {
         let top = edge.level.value();
         let floor = profile.level(cutoff) / top;
         // Even in the mean of the radius and the square of the level: dense at the edge where the profile is steep.
@@ -104,7 +105,7 @@ impl<'a> Kernels<'a> {
         };
         let mut nodes: Vec<_> = (0..CELLS).map(node).collect();
         nodes.push((edge, StressRadius::of_point(&edge)));
-        Kernels { profile, nodes, rows: vec![OnceCell::new(); CELLS] }
+        Kernels { indenter: profile, nodes, rows: vec![OnceCell::new(); CELLS] }
     }
 
     fn row(&self, index: usize) -> &[f64] {
@@ -113,7 +114,7 @@ impl<'a> Kernels<'a> {
             let mut sum = 0.0;
             let mut row = vec![0.0; index + 1];
             row.extend(self.nodes[index..].windows(2).map(|pair| {
-                sum += self.profile.kernel(at, &Ring::between(pair[0].0, pair[1].0)).max(0.0);
+                sum += self.indenter.kernel(at, &Ring::between(pair[0].0, pair[1].0)).max(0.0);
                 sum
             }));
             if sum.is_finite() { row } else { Vec::new() }

@@ -104,8 +104,8 @@ impl EvaluationRange {
     #[must_use]
     pub fn of(contact: &Contact) -> EvaluationRange {
         let edge = contact.contact_radius();
-        let from = cutoff_of(outermost_singular(&contact.profile, edge), edge);
-        let vertical = contact.profile.rim_radius().is_some_and(|rim| edge >= rim);
+        let from = cutoff_of(outermost_singular(&contact.indenter, edge), edge);
+        let vertical = contact.indenter.rim_radius().is_some_and(|rim| edge >= rim);
         EvaluationRange { from, to: if vertical { edge - DEFAULT_CUTOFF * (edge - from) } else { edge }, vertical }
     }
 
@@ -124,7 +124,7 @@ impl EvaluationRange {
 
 /// The load of a vertical edge, over the largest that it can carry.
 fn edge_load(contact: &Contact) -> f64 {
-    let (profile, history) = (&*contact.profile, &contact.history);
+    let (profile, history) = (&*contact.indenter, &contact.history);
     let level = profile.rim_radius().map_or(0.0, |rim| profile.level(rim));
     let piece = history.rings().find(|(ring, _)| ring.inner.level.value() <= level);
     let carried = piece.map_or(0.0, |(_, line)| (line.at(DoubleDouble::from(level)) + history.shift()).value());
@@ -164,14 +164,14 @@ pub fn design(
     keep_going: &dyn Fn() -> bool,
 ) -> Result<Design, Error> {
     let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
-    contact.profile.check_stress_field()?;
+    contact.profile().check_stress_field()?;
     if contact.friction <= 0.0 {
         return Err(above(Quantity::Friction, contact.friction, "a contact without friction carries no shear stress"));
     }
     if contact.indentation() <= 0.0 {
         return Err(above(Quantity::Indentation, contact.indentation(), "bodies that do not touch carry no stress"));
     }
-    if let Some(line) = contact.profile.line() {
+    if let Some(line) = contact.indenter.line() {
         return design_line(contact, line, (start, kind, reversals), end, keep_going);
     }
     let task = DesignTask { contact, reversals, end, range: EvaluationRange::of(contact), keep_going };
@@ -238,7 +238,7 @@ impl DesignTask<'_> {
 
     /// The law of equal peaks from an amplitude on, which may be less than gross slip.
     fn equal_from(&self, first: f64) -> Vec<f64> {
-        let (profile, full) = (&*self.contact.profile, self.contact.gross_slip_displacement());
+        let (profile, full) = (&*self.contact.indenter, self.contact.gross_slip_displacement());
         let core_share = (1.0 - first.abs() / full).max(0.0);
         let from = profile.radius(self.contact.indentation() * core_share).max(self.range.from);
         let spread = EqualPeakMeasure::new(profile, from, self.contact.contact_radius());

@@ -119,7 +119,7 @@ impl Equations<'_> {
 
 /// The residual at the end: of the displacement over the indentation, or of the force over that of gross slip.
 fn miss(problem: &Problem<'_>, kinks: &[Point], first: f64, end: PathEnd) -> f64 {
-    let (profile, edge) = (problem.profile, problem.edge);
+    let (profile, edge) = (problem.indenter, problem.edge);
     match end {
         PathEnd::Free => 0.0,
         PathEnd::DisplacementZero => {

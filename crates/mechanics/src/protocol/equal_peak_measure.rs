@@ -8,7 +8,7 @@ use crate::cells::shape::Reach;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWELVE_POINTS;
 use crate::numerics::roots::within;
-use crate::profile::Profile;
+use crate::indenter::Indenter;
 
 /// s between two radii.
 pub(super) struct EqualPeakMeasure<'a> {
@@ -32,7 +32,7 @@ struct Leaf<'a> {
 
 impl<'a> EqualPeakMeasure<'a> {
     /// `None` if s is not finite, or zero: a flat has no peaks.
-    pub(super) fn new(profile: &'a Profile, inner: f64, outer: f64) -> Option<EqualPeakMeasure<'a>> {
+    pub(super) fn new(profile: &'a Indenter, inner: f64, outer: f64) -> Option<EqualPeakMeasure<'a>> {
         let cells = profile.cells(Reach::Radius(outer))?;
         let tip = cells.cells.first().filter(|tip| inner <= 0.0 && tip.radius <= 0.0 && tip.jumps());
         // In place of the tip of an uneven power stands a cone: there int g'^2 dx/x is that of a power of x.

@@ -5,6 +5,8 @@
 //! W. So a path of displacements of the face is a path of forces F_x = E* L U, and an end without displacement is one
 //! without force; a path that is to end at the displacement zero is one of these but for its last move.
 
+use std::borrow::Cow;
+
 use super::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 use crate::contact::Contact;
 use crate::error::Error;
@@ -14,7 +16,7 @@ use crate::state::{Move, Regime, Tangential};
 impl Contact {
     /// The face at the present load, as if it had never been moved.
     pub(super) fn virgin_face(&self) -> Contact {
-        self.face().into_owned().without_history()
+        self.face().map_or_else(|| self.clone(), Cow::into_owned).without_history()
     }
 
     /// The displacements, m, that lead this contact through the forces of a path of its face from gross slip on, and

@@ -8,7 +8,8 @@
 use super::alternating;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{between, largest_of};
-use crate::profile::{InwardSum, Point, Profile, Ring, StressRadius};
+use crate::indenter::{Indenter, InwardSum};
+use crate::profile::{Point, Ring, StressRadius};
 
 /// The largest number of evaluations of E, after it has been bracketed.
 const MAX_EVALUATIONS: i32 = 80;
@@ -35,7 +36,7 @@ pub(super) struct EqualExtrema {
 
 /// A contact whose stress counts from a cut-off radius outwards.
 pub(super) struct Problem<'a> {
-    pub(super) profile: &'a Profile,
+    pub(super) indenter: &'a Indenter,
     pub(super) edge: Point,
     pub(super) cutoff: f64,
     pub(super) reversals: usize,
@@ -70,7 +71,7 @@ impl VirginStrokes<'_> {
 
     /// Shear stress over G* m/pi, but for the sign of the last stroke, up to the innermost kink.
     fn shear(&self, at: &StressRadius) -> f64 {
-        let profile = self.problem.profile;
+        let profile = self.problem.indenter;
         let core = Ring::between(profile.point(DoubleDouble::ZERO), *self.last());
         self.beyond.at(at) + self.sign() * profile.kernel(at, &core)
     }
@@ -89,7 +90,7 @@ impl Problem<'_> {
     pub(super) fn shear_down_to(&self, least: Point, kinks: &[Point], at: &StressRadius) -> f64 {
         let beyond = kinks.partition_point(|kink| kink.radius >= at.radius);
         let least = kinks.get(beyond).unwrap_or(&least);
-        self.sum_down_to(*least, &kinks[..beyond], |ring| self.profile.kernel(at, ring))
+        self.sum_down_to(*least, &kinks[..beyond], |ring| self.indenter.kernel(at, ring))
     }
 
     /// How far strokes lead that slip down to kinks, scaled by m, if the last of them goes forwards.
@@ -100,7 +101,7 @@ impl Problem<'_> {
 
     /// No kinks yet.
     fn edge_alone(&self) -> VirginStrokes<'_> {
-        let beyond = InwardSum::new(self.profile, &self.edge, self.reversals);
+        let beyond = InwardSum::new(self.indenter, &self.edge, self.reversals);
         VirginStrokes { problem: self, kinks: Vec::with_capacity(self.reversals), beyond, excess: None }
     }
 
@@ -108,9 +109,9 @@ impl Problem<'_> {
     fn next(&self, strokes: &VirginStrokes<'_>, limit: f64) -> Option<Point> {
         let (kinks, sign) = (strokes.kinks.as_slice(), strokes.sign());
         let top = strokes.last().level.value();
-        let least = if self.cutoff > 0.0 { self.profile.level(self.cutoff) } else { 0.0 };
+        let least = if self.cutoff > 0.0 { self.indenter.level(self.cutoff) } else { 0.0 };
         let missing = |level: f64| {
-            let point = self.profile.point(DoubleDouble::from(level));
+            let point = self.indenter.point(DoubleDouble::from(level));
             limit - sign * strokes.shear(&StressRadius::of_point(&point))
         };
         // Steps of a fraction of the last spacing, and ever longer ones: a stress that turns back is not stepped over.
@@ -140,7 +141,7 @@ impl Problem<'_> {
         // A difference below the rounding of the stress counts as zero.
         let rounded = |level| Some(missing(level)).filter(|value| value.abs() > 1e-15 * limit).unwrap_or(0.0);
         let level = between([(high, at_high), (low, at_low)], 2.0 * f64::EPSILON * high, rounded);
-        Some(self.profile.point(DoubleDouble::from(level)))
+        Some(self.indenter.point(DoubleDouble::from(level)))
     }
 
     /// The largest stress of the core, with the sign that the next kink would stop it at.
@@ -148,7 +149,7 @@ impl Problem<'_> {
         let sign = strokes.sign();
         let width = strokes.last().radius - self.cutoff;
         let value = |part: f64| sign * strokes.shear(&StressRadius::new(self.cutoff + width * part));
-        if self.profile.falls(0.0, self.edge.radius).least > 0.0 {
+        if self.indenter.falls(0.0, self.edge.radius).least > 0.0 {
             return value(0.0);
         }
         let parts: Vec<f64> = (0..=CORE).map(|index| index as f64 / CORE as f64).collect();

@@ -32,7 +32,7 @@ use super::unit_prefix::short;
 use crate::contact::Contact;
 use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
-use crate::profile::Profile;
+use crate::indenter::Indenter;
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;
@@ -55,7 +55,7 @@ pub fn falling_amplitude(reversals: usize, amplitude: f64) -> impl Iterator<Item
 }
 
 /// The outermost radius inside `edge`, m, at which the stress is infinite under every path, if there is one.
-fn outermost_singular(profile: &Profile, edge: f64) -> Option<f64> {
+fn outermost_singular(profile: &Indenter, edge: f64) -> Option<f64> {
     profile.singular_radii().into_iter().filter(|&radius| radius < edge).reduce(f64::max)
 }
 
@@ -98,15 +98,15 @@ pub struct EqualPeaks {
 /// # Ok::<(), Error>(())
 /// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
-    contact.profile.check_stress_field()?;
-    if let Some(line) = contact.profile.line() {
+    contact.profile().check_stress_field()?;
+    if let Some(line) = contact.indenter.line() {
         let EqualPeaks { displacements, cutoff_radius: cutoff } =
             equal_peaks(&contact.virgin_face(), reversals, cutoff_radius)?;
         let (displacements, _) = contact.clone().without_history().by_forces(line, &displacements)?;
         return Ok(EqualPeaks { displacements, cutoff_radius: cutoff });
     }
     let edge = contact.contact_radius();
-    let singular = outermost_singular(&contact.profile, edge);
+    let singular = outermost_singular(&contact.indenter, edge);
     let least = singular.unwrap_or(0.0);
     let cutoff = match cutoff_radius {
         Some(given) if !(least..=edge).contains(&given) => {
@@ -118,7 +118,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     };
     // From the radius where s diverges on the law is not defined.
     let spread =
-        (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.profile, cutoff, edge)).flatten();
+        (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.indenter, cutoff, edge)).flatten();
     // The first stroke is gross slip, which wipes out the history.
     let displacements = evenly_spread(contact, spread.as_ref(), reversals, contact.gross_slip_displacement());
     Ok(EqualPeaks { displacements: displacements.collect(), cutoff_radius: cutoff })
@@ -138,7 +138,7 @@ fn evenly_spread(
         let size = match measure {
             _ if index == 0 => amplitude,
             _ if index == reversals => 0.0,
-            Some(measure) => full * (1.0 - contact.profile.level(measure.radius(part)) / indentation).max(0.0),
+            Some(measure) => full * (1.0 - contact.indenter.level(measure.radius(part)) / indentation).max(0.0),
             None => amplitude * (1.0 - part),
         };
         alternating(index, size)
@@ -173,7 +173,7 @@ pub struct Minimax {
 /// # Ok::<(), Error>(())
 /// ```
 pub fn minimax(contact: &Contact, reversals: usize, keep_going: &dyn Fn() -> bool) -> Option<Minimax> {
-    if let Some(line) = contact.profile.line() {
+    if let Some(line) = contact.indenter.line() {
         let found = minimax(&contact.virgin_face(), reversals, keep_going)?;
         let (displacements, _) = contact.by_forces(line, &found.displacements).ok()?;
         return Some(Minimax { displacements, ..found });
@@ -195,7 +195,7 @@ fn minimax_to(
     if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
         return Vec::new();
     }
-    let problem = Problem { profile: &contact.profile, edge, cutoff, reversals, keep_going };
+    let problem = Problem { indenter: &contact.indenter, edge, cutoff, reversals, keep_going };
     let Some(equal) = problem.solve() else { return Vec::new() };
     let found = if end == PathEnd::Free {
         vec![equal.kinks]

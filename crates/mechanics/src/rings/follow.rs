@@ -221,7 +221,7 @@ impl<'a> Scene<'a> {
         let (e_star, g_star) = (contact.elasticity().e_star(), contact.elasticity().g_star());
         let unit_displacement = positive(contact.friction()) * e_star / g_star * depth;
         Ok(Scene {
-            kinks: contact.profile().knots_below(reach),
+            kinks: contact.indenter.knots_below(reach),
             constant_load: loads.iter().all(|load| load.indentation.to_bits() == loads[0].indentation.to_bits()),
             largest_load: loads.iter().map(|load| load.normal_force).fold(0.0, f64::max),
             depth,
@@ -238,13 +238,13 @@ impl<'a> Scene<'a> {
 
     /// Friction times the load of each ring.
     fn bounds(&self, mesh: &Mesh, indentation: f64, normal_force: f64) -> Vec<f64> {
-        let edge = if indentation > 0.0 { self.contact.profile().radius(indentation) } else { 0.0 };
+        let edge = if indentation > 0.0 { self.contact.indenter.radius(indentation) } else { 0.0 };
         let at = |index: usize| {
             let radius = self.reach * mesh.radius(index);
             if index == mesh.count {
                 0.0
             } else {
-                beyond(self.contact.profile(), &self.kinks, indentation, edge, radius)
+                beyond(self.contact.indenter(), &self.kinks, indentation, edge, radius)
             }
         };
         let outside: Vec<f64> = (0..=mesh.count).map(at).collect();

@@ -338,7 +338,7 @@ impl PlanarLaw {
         contact.displacement = displacement;
         if contact.carries_another([indentation, normal_force]) {
             (contact.indentation, contact.normal_force) = (indentation, normal_force);
-            contact.radius = if indentation < 0.0 { 0.0 } else { self.contact.profile().radius(indentation) };
+            contact.radius = if indentation < 0.0 { 0.0 } else { self.contact.indenter.radius(indentation) };
             self.cover(contact, buffers);
         } else {
             buffers.limits.clear();
@@ -382,7 +382,7 @@ impl PlanarLaw {
     /// Friction times the load of each ring, N.
     fn limits(&self, contact: &PlanarContact, buffers: &mut PlanarBuffers) {
         let PlanarBuffers { limits, outside, .. } = buffers;
-        let (profile, count) = (self.contact.profile(), contact.touching() as usize);
+        let (profile, count) = (self.contact.indenter(), contact.touching() as usize);
         let kinks = profile.knots_below(contact.radius);
         let from = |index: usize| {
             let radius = (index as f64 * contact.area).sqrt();

@@ -5,7 +5,7 @@
 //! parts.
 
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};
-use crate::profile::Profile;
+use crate::indenter::Indenter;
 
 /// Kinks up to which each begins a panel of its own. A profile of more is a table, smooth but for its knots.
 const MOST_KINKS: usize = 8;
@@ -14,7 +14,7 @@ const PANELS_OF_TABLE: usize = 24;
 
 /// int (d - g) dt over the load beyond `radius`, m^2, in a contact of the indentation and the contact radius given, m.
 /// `kinks` are the radii at which g is not analytic.
-pub(super) fn beyond(profile: &Profile, kinks: &[f64], indentation: f64, edge: f64, radius: f64) -> f64 {
+pub(super) fn beyond(profile: &Indenter, kinks: &[f64], indentation: f64, edge: f64, radius: f64) -> f64 {
     if radius >= edge || indentation <= 0.0 {
         return 0.0;
     }

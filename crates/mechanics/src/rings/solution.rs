@@ -162,7 +162,7 @@ impl Blend {
 impl Scene<'_> {
     /// What so many rings hardly fall below, over mu F_N.
     fn least_error(&self, rings: usize) -> f64 {
-        let (profile, rings) = (self.contact.profile(), rings as f64);
+        let (profile, rings) = (self.contact.indenter(), rings as f64);
         let smooth = profile.smooth_centre() && profile.singular_radii().is_empty();
         let factor = if self.constant_load { 1.0 } else { UNDER_CHANGING_LOAD };
         let by_square = factor * LEAST_BY_RINGS[usize::from(!smooth)] / (rings * rings);

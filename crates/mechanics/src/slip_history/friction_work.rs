@@ -6,8 +6,9 @@
 //! however small the move. Works here are over 2 G* m^2, in m^3.
 
 use super::piece::{Line, Piece, SAME_TURNING_POINT, THINNEST_CORE};
+use crate::limit::Limit;
 use crate::numerics::double_double::DoubleDouble;
-use crate::profile::{Moments, Point, Profile, Ring};
+use crate::profile::{Moments, Point, Ring};
 
 /// The ring that slips at the end of a move: towards `sign`, with w = sign (indentation - y).
 pub(super) struct SlipRing {
@@ -100,7 +101,7 @@ impl Unloading {
     /// of its displacement. `rings` come from the edge inward, `core` is the innermost piece.
     pub(super) fn work<'a>(
         &self,
-        profile: &Profile,
+        limit: &impl Limit,
         rings: impl Iterator<Item = (Ring, &'a Line)>,
         core: Option<&Piece>,
     ) -> f64 {
@@ -121,12 +122,12 @@ impl Unloading {
             if ring.outer.level <= lowest {
                 break;
             }
-            let inner = if ring.inner.level < lowest { profile.point(lowest) } else { ring.inner };
+            let inner = if ring.inner.level < lowest { limit.point(lowest) } else { ring.inner };
             let (at_inner, at_outer) = (carried(line, inner.level), carried(line, ring.outer.level));
             let steep = (at_outer - at_inner).value();
             let parts = if at_inner.value() * at_outer.value() < 0.0 {
                 let fraction = at_inner.over(at_inner - at_outer);
-                let middle = profile.point(inner.level + (ring.outer.level - inner.level) * fraction);
+                let middle = limit.point(inner.level + (ring.outer.level - inner.level) * fraction);
                 [Some((Ring::between(inner, middle), 0.0)), Some((Ring::between(middle, ring.outer), at_outer.value()))]
             } else {
                 [Some((Ring::between(inner, ring.outer), at_outer.value())), None]
@@ -138,7 +139,7 @@ impl Unloading {
                 }
                 let slope = steep / whole;
                 let middle = end - 0.5 * slope * part.depth;
-                let Moments { width, first, second } = profile.moments(&part);
+                let Moments { width, first, second } = limit.moments(&part);
                 let squares = end * end * width - 2.0 * end * slope * first + slope * slope * second;
                 work += share(middle.signum()) * squares.max(0.0);
             }

@@ -16,7 +16,8 @@ mod instants;
 mod packed;
 mod piece;
 
-use super::profile::{Moments, Point, Profile, Ring};
+use super::profile::{Moments, Point, Ring};
+use crate::limit::Limit;
 use crate::numerics::double_double::DoubleDouble;
 use friction_work::{SlipRing, Unloading};
 pub(super) use piece::{Line, Piece};
@@ -43,11 +44,11 @@ pub(super) struct SlipHistory {
 
 impl SlipHistory {
     /// A virgin contact at indentation d, m.
-    pub(super) fn new(profile: &Profile, indentation: DoubleDouble) -> SlipHistory {
-        let mut history = SlipHistory { edge: edge_at(profile, indentation), ..SlipHistory::default() };
+    pub(super) fn new(limit: &impl Limit, indentation: DoubleDouble) -> SlipHistory {
+        let mut history = SlipHistory { edge: edge_at(limit, indentation), ..SlipHistory::default() };
         if history.in_contact() {
             // The whole contact as one unloaded piece.
-            let inner = profile.point(DoubleDouble::ZERO);
+            let inner = limit.centre();
             history.pieces.push(Piece { inner, ..Piece::default() });
         }
         history
@@ -118,9 +119,9 @@ impl SlipHistory {
 
     /// The friction work on the ring that leaves the contact on the way to indentation `d1` and scaled displacement
     /// `w1`.
-    fn unloading_work(&self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+    fn unloading_work(&self, limit: &impl Limit, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
         let (from, advance, shift) = (self.edge.level, w1 - self.position, self.shift());
-        Unloading { from, to: d1, advance, shift }.work(profile, self.rings(), self.pieces.first())
+        Unloading { from, to: d1, advance, shift }.work(limit, self.rings(), self.pieces.first())
     }
 
     /// The same slopes over other levels, at whose points they then begin: what stresses read, without sums and without
@@ -149,43 +150,43 @@ impl SlipHistory {
     /// Moves along the straight line to indentation `d1` and scaled displacement `w1`. Returns the friction work over
     /// 2 G* m^2, m^3.
     #[must_use]
-    pub(super) fn advance(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
+    pub(super) fn advance(&mut self, limit: &impl Limit, d1: DoubleDouble, w1: DoubleDouble) -> f64 {
         self.slip_from = None;
         if !self.in_contact() {
             let d0 = self.edge.level;
             if d1.value() <= 0.0 {
-                self.place(profile, d1, w1);
+                self.place(limit, d1, w1);
                 return 0.0;
             }
             let touching = self.position + ((w1 - self.position) * (-d0)).over(d1 - d0);
-            self.place(profile, DoubleDouble::ZERO, touching);
+            self.place(limit, DoubleDouble::ZERO, touching);
         }
         if d1.value() <= 0.0 {
-            let work = self.unloading_work(profile, d1, w1);
-            self.place(profile, d1, w1);
+            let work = self.unloading_work(limit, d1, w1);
+            self.place(limit, d1, w1);
             return work;
         }
         let dw = w1 - self.position;
         let dd = if d1 == self.edge.level { DoubleDouble::ZERO } else { d1 - self.edge.level };
         if dd >= dw.abs() {
-            self.grow(profile, d1, w1);
+            self.grow(limit, d1, w1);
             return 0.0;
         }
-        self.slip(profile, (d1, w1), (dd, dw))
+        self.slip(limit, (d1, w1), (dd, dw))
     }
 
     /// Out of contact, or just touching: a position and nothing else.
-    fn place(&mut self, profile: &Profile, indentation: DoubleDouble, position: DoubleDouble) {
+    fn place(&mut self, limit: &impl Limit, indentation: DoubleDouble, position: DoubleDouble) {
         self.pieces.clear();
         self.total = Sums::default();
-        self.edge = edge_at(profile, indentation);
+        self.edge = edge_at(limit, indentation);
         self.position = position;
         self.reference = position;
     }
 
     /// The load rises at least as fast as the indenter moves: nothing slips, and what is touched on the way keeps the
     /// displacement gained since its touch.
-    fn grow(&mut self, profile: &Profile, d1: DoubleDouble, w1: DoubleDouble) {
+    fn grow(&mut self, limit: &impl Limit, d1: DoubleDouble, w1: DoubleDouble) {
         let d0 = self.edge.level;
         let rise = d1 - d0;
         if rise.value() <= 0.0 {
@@ -194,35 +195,35 @@ impl SlipHistory {
         let slope = -(w1 - self.position).over(rise);
         let inner = self.edge;
         self.position = w1;
-        self.edge = edge_at(profile, d1);
+        self.edge = edge_at(limit, d1);
         // A straight path in two steps is one path: the top piece is drawn out as long as it still meets the edge.
         let straight_on = self.pieces.last().is_some_and(|top| {
             let off = (top.line.at(d1) + self.shift()).abs();
             off.value() <= round_off(d1, self.shift(), rise)
         });
         if straight_on {
-            self.close(profile);
+            self.close(limit);
         } else {
             let ring = Ring::between(inner, self.edge);
-            self.push_through(&profile.moments(&ring), &ring, (slope, self.shift()), self.total);
+            self.push_through(&limit.moments(&ring), &ring, (slope, self.shift()), self.total);
         }
     }
 
     /// An outer ring slips on the way to (d1, w1), which is (dd, dw) from here.
     fn slip(
         &mut self,
-        profile: &Profile,
+        limit: &impl Limit,
         (d1, w1): (DoubleDouble, DoubleDouble),
         (dd, dw): (DoubleDouble, DoubleDouble),
     ) -> f64 {
         let mut work = 0.0;
         let (sign, mut excess);
         if dd.value() < 0.0 {
-            work += self.unloading_work(profile, d1, w1);
+            work += self.unloading_work(limit, d1, w1);
             while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
                 self.pieces.pop();
             }
-            self.edge = edge_at(profile, d1);
+            self.edge = edge_at(limit, d1);
             self.position = w1;
             if let Some(top) = self.pieces.last_mut() {
                 top.moments = None;
@@ -230,7 +231,7 @@ impl SlipHistory {
             let trial = self.pieces.last().map_or(DoubleDouble::ZERO, |top| top.line.at(d1)) + self.shift();
             if trial.abs().value() <= round_off(d1, self.shift(), dd) {
                 // The move takes the last rise of the load back along the same line.
-                self.close(profile);
+                self.close(limit);
                 return work;
             }
             sign = trial.value().signum();
@@ -248,9 +249,9 @@ impl SlipHistory {
         let shift = self.shift();
         let slipping = SlipRing { sign, shift, indentation: d1, lag };
         if dd.value() > 0.0 {
-            let touched = Ring::between(self.edge, edge_at(profile, d1));
+            let touched = Ring::between(self.edge, edge_at(limit, d1));
             let core = if self.pieces.is_empty() { touched.inner.radius * touched.depth * touched.depth } else { 0.0 };
-            work += (profile.moments(&touched).second + core) * rate / (2.0 * dd.value());
+            work += (limit.moments(&touched).second + core) * rate / (2.0 * dd.value());
         }
         let mut outer = self.edge;
         let mut slipped = None;
@@ -261,19 +262,19 @@ impl SlipHistory {
             if stuck_from.is_none() && excess <= at_bound {
                 stuck_from = Some(outer);
             }
-            let Some(top) = self.pieces.last() else { break profile.point(DoubleDouble::ZERO) };
+            let Some(top) = self.pieces.last() else { break limit.centre() };
             let inward = slipping.inward(top);
             if let Some(level) = slipping.crossing(top, &inward, &outer) {
-                let cut = profile.point(level);
+                let cut = limit.point(level);
                 let ring = Ring::between(cut, outer);
-                let moments = profile.moments(&ring);
+                let moments = limit.moments(&ring);
                 work += slipping.work(&moments, &top.line, excess, &ring);
                 // At constant load, a slip that stays within one piece is itself the piece to be pushed.
                 slipped = (outer.level == d1).then_some(moments);
                 break cut;
             }
             let ring = Ring::between(top.inner, outer);
-            work += slipping.work(&top.moments_to(profile, &outer), &top.line, excess, &ring);
+            work += slipping.work(&top.moments_to(limit, &outer), &top.line, excess, &ring);
             excess = inward.excess.value();
             outer = top.inner;
             self.pieces.pop();
@@ -282,10 +283,10 @@ impl SlipHistory {
             }
         };
         if dd.value() > 0.0 {
-            self.edge = edge_at(profile, d1);
+            self.edge = edge_at(limit, d1);
         }
         let below = if let Some(top) = self.pieces.last_mut() {
-            top.end_at(profile, &start)
+            top.end_at(limit, &start)
         } else {
             self.reference = w1;
             Sums::default()
@@ -293,7 +294,7 @@ impl SlipHistory {
         self.slip_from = Some(stuck_from.unwrap_or(start));
         if start.level < d1 {
             let ring = Ring::between(start, self.edge);
-            let moments = slipped.unwrap_or_else(|| profile.moments(&ring));
+            let moments = slipped.unwrap_or_else(|| limit.moments(&ring));
             let shift = if self.pieces.is_empty() { DoubleDouble::ZERO } else { shift };
             self.push_through(&moments, &ring, (DoubleDouble::from(-sign), shift), below);
         } else {
@@ -318,9 +319,9 @@ impl SlipHistory {
     }
 
     /// Sums up to the edge, from the sums below the top piece.
-    fn close(&mut self, profile: &Profile) {
+    fn close(&mut self, limit: &impl Limit) {
         let edge = self.edge;
-        self.total = self.pieces.last_mut().map_or_else(Sums::default, |top| top.end_at(profile, &edge));
+        self.total = self.pieces.last_mut().map_or_else(Sums::default, |top| top.end_at(limit, &edge));
     }
 }
 
@@ -337,10 +338,10 @@ fn closes_at(indentation: DoubleDouble, shift: DoubleDouble, change: f64) -> f64
 }
 
 /// The edge of a contact at `indentation`; with a gap there is none, and its radius is zero.
-fn edge_at(profile: &Profile, indentation: DoubleDouble) -> Point {
+fn edge_at(limit: &impl Limit, indentation: DoubleDouble) -> Point {
     if indentation.value() < 0.0 {
         Point { level: indentation, ..Point::default() }
     } else {
-        profile.point(indentation)
+        limit.point(indentation)
     }
 }

@@ -6,8 +6,9 @@
 
 use std::fmt;
 
+use crate::limit::Limit;
 use crate::numerics::double_double::DoubleDouble;
-use crate::profile::{Moments, Point, Profile, Ring};
+use crate::profile::{Moments, Point, Ring};
 
 /// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
 /// is itself rounded. w at the edge is rounded by as much.
@@ -79,20 +80,20 @@ impl Piece {
     }
 
     /// The integrals over its ring, which ends at `outer`.
-    pub(super) fn moments_to(&self, profile: &Profile, outer: &Point) -> Moments {
-        self.moments.unwrap_or_else(|| profile.moments(&Ring::between(self.inner, *outer)))
+    pub(super) fn moments_to(&self, limit: &impl Limit, outer: &Point) -> Moments {
+        self.moments.unwrap_or_else(|| limit.moments(&Ring::between(self.inner, *outer)))
     }
 
     /// The sums up to `outer`, where the piece ends from now on.
     #[inline]
-    pub(super) fn end_at(&mut self, profile: &Profile, outer: &Point) -> Sums {
+    pub(super) fn end_at(&mut self, limit: &impl Limit, outer: &Point) -> Sums {
         let slope = self.line.slope.value();
         if slope.abs() <= 0.0 {
             self.moments = None;
             return self.below;
         }
         let ring = Ring::between(self.inner, *outer);
-        let moments = profile.moments(&ring);
+        let moments = limit.moments(&ring);
         self.moments = Some(moments);
         self.below.and(&moments, &ring, slope, self.line.at(outer.level).value())
     }

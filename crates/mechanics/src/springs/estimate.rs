@@ -69,7 +69,7 @@ impl Springs {
         let edge = self.contact_radius();
         // So few springs leave no radius that is far from all.
         let near = if edge > FEW * self.spacing { NEAREST * self.spacing } else { 0.0 };
-        let singular = self.exact.profile.singular_radii();
+        let singular = self.exact.indenter.singular_radii();
         let mut kinks: Vec<f64> = self.exact.history.rings().map(|(ring, _)| ring.inner.radius).collect();
         kinks.push(edge);
         let even = (0..COMPARED).map(|index| edge * (index as f64 + 0.5) / COMPARED as f64);

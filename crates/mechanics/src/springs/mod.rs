@@ -121,7 +121,7 @@ impl Springs {
         let spring = |index: usize| {
             let radius = (index as f64 + first) * spacing;
             let weight = if radius > 0.0 { 2.0 } else { 1.0 };
-            Spring { radius, level: contact.profile.level(radius), weight, carried: 0.0 }
+            Spring { radius, level: contact.indenter.level(radius), weight, carried: 0.0 }
         };
         let mut springs = Vec::with_capacity(count.div_ceil(2));
         for index in 0..count.div_ceil(2) {
@@ -155,7 +155,7 @@ impl Springs {
 
     /// Tangential stiffness of a spring, G* dx, N/m.
     fn stiffness(&self) -> f64 {
-        self.virgin.initial.g_star * self.spacing
+        self.virgin.elasticity.g_star() * self.spacing
     }
 
     /// Moves along a straight line. Nothing has changed when an error is returned.
@@ -246,7 +246,7 @@ impl Springs {
         self.displacement = u1;
         let radius = self.contact_radius();
         self.stick_radius = if self.slipped { stick_radius.min(radius) } else { radius };
-        self.note_error(stiffness * carried, self.virgin.initial.e_star * self.spacing * pressed);
+        self.note_error(stiffness * carried, self.virgin.elasticity.e_star() * self.spacing * pressed);
     }
 
     /// The displacement, m, that gives a tangential force, N: bisected, since the force only grows with it.
@@ -296,7 +296,7 @@ impl Springs {
     /// Contact radius a, m.
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
-        if self.indentation < 0.0 { 0.0 } else { self.virgin.profile.radius(self.indentation) }
+        if self.indentation < 0.0 { 0.0 } else { self.virgin.indenter.radius(self.indentation) }
     }
 
     /// Tangential force, N.
@@ -310,7 +310,7 @@ impl Springs {
     #[must_use]
     pub fn normal_force(&self) -> f64 {
         let sum: f64 = self.in_contact().map(|spring| spring.weight * (self.indentation - spring.level)).sum();
-        self.virgin.initial.e_star * self.spacing * sum
+        self.virgin.elasticity.e_star() * self.spacing * sum
     }
 
     /// The state after the last move; `memory_depth` counts the springs in contact.

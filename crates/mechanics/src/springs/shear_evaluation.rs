@@ -51,7 +51,7 @@ impl Springs {
         let edge = (self.indentation, 0.0);
         let nodes = self.in_contact().map(|spring| (spring.level, spring.carried)).chain([edge]);
         let nodes: Vec<_> =
-            nodes.map(|(level, carried)| (self.virgin.profile.point(DoubleDouble::from(level)), carried)).collect();
+            nodes.map(|(level, carried)| (self.virgin.indenter.point(DoubleDouble::from(level)), carried)).collect();
         let rings: Vec<(Ring, f64)> = nodes
             .windows(2)
             .map(|pair| {
@@ -60,8 +60,8 @@ impl Springs {
                 (ring, slope)
             })
             .collect();
-        let unit = self.virgin.initial.g_star / PI;
-        self.virgin.profile.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
+        let unit = self.virgin.elasticity.g_star() / PI;
+        self.virgin.indenter.kernel_sums(&rings, radii).into_iter().map(|sum| unit * sum).collect()
     }
 
     fn shear_by_differences(&self, nodes: &[(f64, f64)], radius: f64) -> f64 {
@@ -87,6 +87,6 @@ impl Springs {
                 (carried - next) / ((middle - radius) * (middle + radius)).sqrt()
             })
             .sum();
-        self.virgin.initial.g_star / PI * sum
+        self.virgin.elasticity.g_star() / PI * sum
     }
 }

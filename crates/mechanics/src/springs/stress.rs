@@ -19,7 +19,7 @@ impl Springs {
     /// Pressure, Pa, at a radius, m.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        self.virgin.initial.e_star * self.stress(radius, self.rim_depth(), |spring| self.indentation - spring.level)
+        self.virgin.elasticity.e_star() * self.stress(radius, self.rim_depth(), |spring| self.indentation - spring.level)
     }
 
     /// Shear stress, Pa, at a radius, m.
@@ -27,16 +27,16 @@ impl Springs {
     pub fn shear(&self, radius: f64) -> f64 {
         let room = self.virgin.scale() * self.rim_depth();
         let last = self.in_contact().last().map_or(0.0, |spring| spring.carried);
-        self.virgin.initial.g_star * self.stress(radius, last.clamp(-room, room), |spring| spring.carried)
+        self.virgin.elasticity.g_star() * self.stress(radius, last.clamp(-room, room), |spring| spring.carried)
     }
 
     /// How deep a vertical edge is pressed in, m; zero for a profile without one, but for rounding.
     pub(super) fn rim_depth(&self) -> f64 {
         // Elsewhere a rounded remainder would make the stress infinite.
-        if self.virgin.profile.rim_radius().is_none_or(|rim| self.contact_radius() < rim) {
+        if !self.virgin.indenter.is_upright(&self.virgin.indenter.point(self.indentation.into())) {
             return 0.0;
         }
-        (self.indentation - self.virgin.profile.level(self.contact_radius())).max(0.0)
+        (self.indentation - self.virgin.indenter.level(self.contact_radius())).max(0.0)
     }
 
     /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from

@@ -9,13 +9,14 @@
 //! with an error of 8^-16.
 
 use super::complex::Complex;
+use crate::indenter::Indenter;
 use crate::cells::shape::Reach;
 use crate::cells::span::Span;
 use crate::cells::{Cell, SpanParts};
 use crate::numerics::chebyshev::{self, SIXTEEN};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::gauss::TWELVE_POINTS;
-use crate::profile::{Profile, Ring, StressRadius};
+use crate::profile::{Ring, StressRadius};
 
 /// Points that stand for all panels of a node.
 const CHEBYSHEV: usize = 16;
@@ -66,7 +67,7 @@ fn distance(low: f64, high: f64, r: f64, z: f64) -> f64 {
 
 impl Mesh {
     /// The mesh of rings from the edge inward, each with its -dw/dy, for a contact of this radius, m.
-    pub(super) fn new(profile: &Profile, rings: &[(Ring, f64)], radius: f64) -> Mesh {
+    pub(super) fn new(profile: &Indenter, rings: &[(Ring, f64)], radius: f64) -> Mesh {
         let reach = rings.first().map_or(0.0, |(ring, _)| ring.outer.radius);
         let cells = profile.cells(Reach::Radius(reach));
         let mut panels = Vec::new();
@@ -99,7 +100,7 @@ impl Mesh {
     /// depth z, over the contact radius.
     pub(super) fn visit(
         &self,
-        profile: &Profile,
+        profile: &Indenter,
         radius: f64,
         (from_axis, z): (f64, f64),
         mut visit: impl FnMut(f64, &Source),

@@ -86,14 +86,14 @@ impl Contact {
     /// As [`Contact::subsurface`], without a copy.
     pub(super) fn into_subsurface(self, side: Side, poisson_ratio: f64) -> Result<Subsurface, Error> {
         let poisson = range::POISSON_RATIO.check(poisson_ratio)?;
-        self.profile.check_stress_field()?;
+        self.profile().check_stress_field()?;
         let radius = self.contact_radius();
         let sign = if side == Side::Second { 1.0 } else { -1.0 };
         let (pressed, dragged) = (self.elasticity.e_star(), sign * self.elasticity.g_star() * self.scale());
         let units = (pressed / (PI * radius), dragged / (PI * radius));
-        let singular = self.profile.singular_radii().into_iter().chain([0.0, radius]).collect();
-        let kinks = matches!(*self.profile, Profile::Sphere(_)).then(|| self.kinks());
-        let line = self.profile.line().map(|line| LineField::new(&self, line));
+        let singular = self.indenter.singular_radii().into_iter().chain([0.0, radius]).collect();
+        let kinks = matches!(self.profile(), Profile::Sphere(_)).then(|| self.kinks());
+        let line = self.indenter.line().map(|line| LineField::new(&self, line));
         Ok(Subsurface { contact: self, kinks, line, mesh: OnceLock::new(), side, poisson, units, singular })
     }
 
@@ -101,7 +101,7 @@ impl Contact {
     fn kinks(&self) -> Kinks {
         let radius = self.contact_radius();
         // y = (t a)^2/R.
-        let level = self.profile.level(radius);
+        let level = self.indenter.level(radius);
         let mut outer = None;
         let kink = |(ring, share): (Ring, f64)| {
             let (normal, change) = if let Some(outer) = outer { (0.0, share - outer) } else { (level, share) };
@@ -143,7 +143,7 @@ impl Subsurface {
     /// The stress below a line contact, with the stress along x that comes with its tangential force.
     fn below_line(&self, field: &LineField, x: f64, z: f64) -> Stress {
         let contact = &self.contact;
-        let carried = contact.profile.line().and_then(LineContact::bulk).filter(|bulk| bulk.side == self.side);
+        let carried = contact.indenter.line().and_then(LineContact::bulk).filter(|bulk| bulk.side == self.side);
         let along = carried.map_or(0.0, |bulk| bulk.stress_per_force * contact.force());
         if contact.normal_force() <= 0.0 {
             return Stress { xx: along, ..Stress::default() };
@@ -165,9 +165,9 @@ impl Subsurface {
         let radius = self.contact.contact_radius();
         let mesh = self.mesh.get_or_init(|| {
             let rings = self.contact.shear_rings().collect::<Vec<_>>();
-            Mesh::new(self.contact.profile(), &rings, radius)
+            Mesh::new(&self.contact.indenter, &rings, radius)
         });
-        mesh.visit(self.contact.profile(), radius, (from_axis, place.z), |offset, source| {
+        mesh.visit(&self.contact.indenter, radius, (from_axis, place.z), |offset, source| {
             let (p, q) = place.kernels(offset);
             for (sum, value) in normal.iter_mut().zip(p) {
                 *sum += source.normal * value;

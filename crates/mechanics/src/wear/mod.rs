@@ -16,6 +16,7 @@ use std::f64::consts::{FRAC_2_PI, PI};
 
 pub use table::WornTable;
 
+use crate::indenter::Indenter;
 use crate::contact::Contact;
 use crate::error::Error;
 use crate::normal;
@@ -110,7 +111,7 @@ impl<'a> WornContact<'a> {
     /// As [`Profile::check_wear`]; [`Error::OutOfRange`] for an amplitude from gross slip on, under which all of the
     /// contact wears on; [`Error::WornBeyondProfile`] if the profile ends within the worn part.
     pub fn new(contact: &'a Contact, amplitude: f64) -> Result<WornContact<'a>, Error> {
-        contact.profile.check_wear()?;
+        contact.profile().check_wear()?;
         let edge = *contact.history.edge();
         let step = contact.scaled(DoubleDouble::from(amplitude));
         let level = edge.level - step;
@@ -123,7 +124,7 @@ impl<'a> WornContact<'a> {
             );
             return Err(Error::OutOfRange { quantity: Quantity::Displacement, value: amplitude, allowed });
         }
-        let stick = contact.profile.point(level);
+        let stick = contact.indenter.point(level);
         let mut worn = WornContact { contact, stick, worn: edge, step: step.value(), amplitude };
         if worn.wears() {
             worn.worn = worn.meeting_point()?;
@@ -152,7 +153,7 @@ impl<'a> WornContact<'a> {
     /// The normal force that is left, N.
     #[must_use]
     pub fn normal_force(&self) -> f64 {
-        let inside = normal::load(&self.contact.profile, &normal::whole(&self.contact.profile, &self.stick));
+        let inside = normal::load(&self.contact.indenter, &normal::whole(&self.contact.indenter, &self.stick));
         2.0 * self.contact.elasticity.e_star() * (inside + self.step * self.stick.radius)
     }
 
@@ -166,7 +167,7 @@ impl<'a> WornContact<'a> {
     #[must_use]
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
         let unit = self.contact.elasticity.e_star() / PI;
-        let inside = normal::pressures(&self.contact.profile, &self.contact.elasticity, &self.stick, radii);
+        let inside = normal::pressures(&self.contact.indenter, &self.contact.elasticity, &self.stick, radii);
         let edge_term = |radius: f64| {
             if radius >= self.stick.radius {
                 return if radius <= self.stick.radius && self.step > 0.0 { f64::INFINITY } else { 0.0 };
@@ -180,7 +181,7 @@ impl<'a> WornContact<'a> {
     /// of the profile.
     #[must_use]
     pub fn reach(&self, multiple: f64) -> f64 {
-        let profile = &self.contact.profile;
+        let profile = &self.contact.indenter;
         let end = profile.limit_radius().map(|limit| KNOWN * limit).or(profile.rim_radius());
         end.map_or(f64::INFINITY, |end| end.max(self.worn.radius)).min(multiple * self.worn.radius)
     }
@@ -188,7 +189,7 @@ impl<'a> WornContact<'a> {
     /// The heights of the surface at each of `radii`, m, below the end of the profile.
     #[must_use]
     pub fn heights(&self, radii: &[f64]) -> WornHeights {
-        let before = unworn_heights(&self.contact.profile, radii);
+        let before = unworn_heights(&self.contact.indenter, radii);
         let worn = |radius: &f64| self.wears() && *radius > self.stick.radius && *radius <= self.worn.radius;
         let places: Vec<f64> = radii.iter().copied().filter(worn).collect();
         let mut limits = self.worn_heights(&places).into_iter();
@@ -200,7 +201,7 @@ impl<'a> WornContact<'a> {
 
     /// (2/pi) [int_0^c g dx/sqrt(r^2 - x^2) + d arccos(c/r)], m, at each of `radii` beyond c, m.
     fn worn_heights(&self, radii: &[f64]) -> Vec<f64> {
-        let profile = &self.contact.profile;
+        let profile = &self.contact.indenter;
         let whole = normal::whole(profile, &self.stick);
         let (at, level) = (StressRadius::of_all(radii), self.stick.level.value());
         let inside = profile.displacements(&[(whole, 1.0)], (0.0, level), &at);
@@ -226,7 +227,7 @@ impl<'a> WornContact<'a> {
         let mut squares: Vec<DoubleDouble> = (0..=DEPTH_SCAN)
             .map(|index| low + width * share(index))
             .chain(
-                (1..DEPTH_SCAN).map(|index| self.contact.profile.point(self.stick.level + rise * share(index)).square),
+                (1..DEPTH_SCAN).map(|index| self.contact.indenter.point(self.stick.level + rise * share(index)).square),
             )
             .collect();
         squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
@@ -245,7 +246,7 @@ impl<'a> WornContact<'a> {
         if !self.wears() {
             return 0.0;
         }
-        let profile = &self.contact.profile;
+        let profile = &self.contact.indenter;
         let (stick, worn) = (self.stick.radius, self.worn.radius);
         let mut kinks = profile.knots_below(worn);
         kinks.retain(|&kink| kink > stick);
@@ -262,7 +263,7 @@ impl<'a> WornContact<'a> {
     /// int (d - g) sqrt(b^2 - x^2) dx between two radii, m, above the kink `base`, m, by x^2 = b^2 - T^2 sin^2 psi, T^2
     /// = b^2 - base^2: g is analytic in sqrt(x^2 - base^2), and so is the integrand in psi.
     fn volume_between(&self, base: f64, [inner, outer]: [f64; 2], error: f64) -> f64 {
-        let (profile, depth) = (&self.contact.profile, self.edge().level);
+        let (profile, depth) = (&self.contact.indenter, self.edge().level);
         let total = (self.worn.square - DoubleDouble::square_of(base)).value();
         let angle = |x: f64| {
             let below = (self.worn.square - DoubleDouble::square_of(x)).value().max(0.0);
@@ -281,7 +282,7 @@ impl<'a> WornContact<'a> {
 
     /// H(r) = int_c^r (d - g) dx/sqrt(r^2 - x^2), m, at a radius from c to that of `end`, which is not inside the edge.
     fn gap_integral(&self, at: &StressRadius, end: &Point) -> f64 {
-        let (profile, edge) = (&self.contact.profile, self.edge());
+        let (profile, edge) = (&self.contact.indenter, self.edge());
         let pressed = profile.displacement_integral(at, &Ring::between(self.stick, *edge));
         if at.square <= edge.square {
             return pressed;
@@ -292,7 +293,7 @@ impl<'a> WornContact<'a> {
 
     /// Where H is zero beyond the edge, or a vertical edge before that.
     fn meeting_point(&self) -> Result<Point, Error> {
-        let (profile, edge) = (&self.contact.profile, self.edge());
+        let (profile, edge) = (&self.contact.indenter, self.edge());
         let point = |rise: f64| profile.point(edge.level + DoubleDouble::from(rise));
         let surplus = |rise: f64| {
             let point = point(rise);
@@ -325,13 +326,13 @@ impl<'a> WornContact<'a> {
 }
 
 /// The heights of a surface at each of `radii`, m, above its lowest point, m: f(r) = (2/pi) int arccos(x/r) dg.
-fn unworn_heights(profile: &Profile, radii: &[f64]) -> Vec<f64> {
+fn unworn_heights(profile: &Indenter, radii: &[f64]) -> Vec<f64> {
     let band = |radius: f64| (BANDS * radius.log2()).ceil() as i64;
     radii.chunk_by(|one, other| band(*one) == band(*other)).flat_map(|radii| heights_together(profile, radii)).collect()
 }
 
 /// The same by one sum up to the largest radius, whose rounding error all share.
-fn heights_together(profile: &Profile, radii: &[f64]) -> Vec<f64> {
+fn heights_together(profile: &Indenter, radii: &[f64]) -> Vec<f64> {
     let at = StressRadius::of_all(radii);
     let outermost = profile.level(BEYOND * radii.iter().copied().fold(0.0, f64::max));
     let ring = normal::whole(profile, &profile.point(outermost.into()));

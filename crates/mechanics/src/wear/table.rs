@@ -10,6 +10,7 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::{WornContact, unworn_heights};
 use crate::cells::shape::Shape;
+use crate::indenter::Indenter;
 use crate::normal;
 use crate::numerics::gauss::{TWENTY_POINTS, integral};
 use crate::profile::{Profile, Tabulated};
@@ -53,7 +54,7 @@ impl WornContact<'_> {
     /// `None` too once `keep_going` has returned false.
     #[must_use]
     pub fn table_while(&self, keep_going: &dyn Fn() -> bool) -> Option<WornTable> {
-        if self.contact.profile.rim_radius().is_some() || !self.wears() {
+        if self.contact.indenter.rim_radius().is_some() || !self.wears() {
             return None;
         }
         let (first, exponent) =
@@ -61,7 +62,7 @@ impl WornContact<'_> {
         let error = |force: f64| (force / self.normal_force() - 1.0).abs();
         // The rise adds to the normal force what lies below it; it takes from it where it begins inside c.
         let inward = (first.1 - self.normal_force()) / (2.0 * self.contact.elasticity.e_star() * self.step);
-        let begins = self.contact.profile.level((self.stick.radius - inward).max(0.0));
+        let begins = self.contact.indenter.level((self.stick.radius - inward).max(0.0));
         let amplitude = self.contact.scale() * (self.edge().level.value() - begins);
         let moved = WornContact::new(self.contact, amplitude).ok();
         let moved = moved.and_then(|moved| moved.smooth(exponent, keep_going));
@@ -77,7 +78,7 @@ impl WornContact<'_> {
     /// `None` if its g falls.
     fn smooth(&self, exponent: i32, keep_going: &dyn Fn() -> bool) -> Option<(WornTable, f64)> {
         let radii = self.table_radii();
-        let unworn = unworn_heights(&self.contact.profile, &radii);
+        let unworn = unworn_heights(&self.contact.indenter, &radii);
         let is_worn = |radius: f64| radius > self.stick.radius && radius < self.worn.radius;
         let worn: Vec<f64> = radii.iter().copied().filter(|&radius| is_worn(radius)).collect();
         let limit = self.worn_heights(&worn);
@@ -90,7 +91,7 @@ impl WornContact<'_> {
         let heights: Vec<f64> = radii.iter().zip(&unworn).map(height).collect();
         let table = Tabulated::new_while(&radii, &heights, keep_going).ok()?;
         table.end().filter(|end| end.radius > self.worn.radius)?;
-        let table = Profile::Tabulated(table);
+        let table = Indenter::new(Profile::Tabulated(table));
         let force = normal::force(&table, &self.contact.elasticity, &table.point(self.edge().level));
         Some((WornTable { radii, heights, normal_force_error: 0.0, rise_width: 0.0 }, force))
     }
@@ -124,7 +125,7 @@ impl WornContact<'_> {
 
     /// The radii of the table, m.
     fn table_radii(&self) -> Vec<f64> {
-        let profile = &self.contact.profile;
+        let profile = &self.contact.indenter;
         let (stick, worn) = (self.stick.radius, self.worn.radius);
         let end = self.reach(REACH);
         let singular = profile.singular_radii();

@@ -238,7 +238,7 @@ fn height(body: &Profile, r: f64) -> f64 {
         Profile::Sum(sum) => sum.parts().iter().map(|part| height(part, r)).sum(),
         // f follows from g by the other Abel transform: f(r) = (2/pi) int_0^r g(x)/sqrt(r^2 - x^2) dx, x = r sin q.
         other => {
-            let g = |q: f64| other.level(r * q.sin());
+            let g = |q: f64| other.indenter().level(r * q.sin());
             crate::support::quadrature::integral(&g, 0.0, std::f64::consts::FRAC_PI_2, 1e-15)
                 * std::f64::consts::FRAC_2_PI
         }
@@ -256,10 +256,10 @@ fn estimates_of_what_tables_leave_open_are_honest() {
         let table = measured(&mut random, |r| height(&body, r));
         let elasticity = Elasticity::effective(1e6, random.within(5e5, 1.2e6)).unwrap();
         let (share, friction) = (random.within(0.5, 0.9), random.within(0.1, 0.9));
-        let load = 2e6 * body.level(share) * share * 0.7;
+        let load = 2e6 * body.indenter().level(share) * share * 0.7;
         let preload = match random.bits() % 3 {
             0 => Preload::ContactRadius(share),
-            1 => Preload::Indentation(body.level(share)),
+            1 => Preload::Indentation(body.indenter().level(share)),
             _ => Preload::NormalForce(load),
         };
         let contact =

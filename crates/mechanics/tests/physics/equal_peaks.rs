@@ -147,7 +147,7 @@ fn reversals_are_spread_evenly_in_s_by_another_quadrature() {
     let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
     let slope_of = |profile: &Profile| {
         let profile = profile.clone();
-        Box::new(move |x: f64| profile.slope(x)) as Box<dyn Fn(f64) -> f64>
+        Box::new(move |x: f64| profile.indenter().slope(x)) as Box<dyn Fn(f64) -> f64>
     };
     let cases = [
         (
@@ -176,7 +176,7 @@ fn reversals_are_spread_evenly_in_s_by_another_quadrature() {
         let mut worst: f64 = 0.0;
         for (index, found) in equal.displacements.iter().enumerate().skip(1) {
             let level = indentation * (1.0 - found.abs() / contact.gross_slip_displacement());
-            worst = worst.max((s(profile.radius(level)) / whole - index as f64 / 20.0).abs());
+            worst = worst.max((s(profile.indenter().radius(level)) / whole - index as f64 / 20.0).abs());
         }
         println!("{name}: s off by {worst:.1e}");
         assert!(worst < 1e-10, "{name}: {worst:e}");

@@ -164,7 +164,7 @@ pub fn check(contact: &Contact, notes: &[f64]) -> usize {
     }
     for (index, peak) in peaks.iter().enumerate() {
         assert!(peak.radius > 0.0 && peak.radius < edge && peak.shear.is_finite(), "{peak:?}");
-        assert!(!contact.profile().singular_radii().contains(&peak.radius) || contact.shear(peak.radius).is_finite());
+        assert!(!contact.indenter().singular_radii().contains(&peak.radius) || contact.shear(peak.radius).is_finite());
         let before = index.checked_sub(1).map_or(0.0, |index| peaks[index].radius);
         let after = peaks.get(index + 1).map_or(edge, |peak| peak.radius);
         // As far as the stress shows it, it is the same kind of extremum on either side.

@@ -388,13 +388,13 @@ fn rings_of_a_line_contact_add_up_however_thin_they_are() {
         let profile = Profile::Line(line);
         for _ in 0..200 {
             let top = profile
-                .level_at_edge(profile.contact_radius(0.0).max(1e-5) * (1.0 + 10f64.powf(6.0 * random.f64() - 5.0)));
+                .indenter().level_at_edge(profile.indenter().contact_radius(0.0).max(1e-5) * (1.0 + 10f64.powf(6.0 * random.f64() - 5.0)));
             let low = top * (1.0 - 10f64.powf(-9.0 * random.f64()));
             let middle = low + (top - low) * random.f64();
-            let [low, middle, high] = [low, middle, top].map(|level| profile.point(level.into()));
+            let [low, middle, high] = [low, middle, top].map(|level| profile.indenter().point(level.into()));
             let (whole, inner, outer) =
                 (Ring::between(low, high), Ring::between(low, middle), Ring::between(middle, high));
-            let [whole, inner, outer_moments] = [whole, inner, outer].map(|ring| profile.moments(&ring));
+            let [whole, inner, outer_moments] = [whole, inner, outer].map(|ring| profile.indenter().moments(&ring));
             let stacked = Moments {
                 width: inner.width + outer_moments.width,
                 first: inner.first + outer.depth * inner.width + outer_moments.first,

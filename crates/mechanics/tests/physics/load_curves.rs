@@ -28,7 +28,7 @@ fn asperities(radii: &[f64], gaps: &[f64]) -> Profile {
 }
 
 fn ring(profile: &Profile, low: f64, high: f64) -> Ring {
-    Ring::between(profile.point(low.into()), profile.point(high.into()))
+    Ring::between(profile.indenter().point(low.into()), profile.indenter().point(high.into()))
 }
 
 /// Random radii, m, and gaps, m.
@@ -106,15 +106,15 @@ fn sums_over_asperities_keep_their_digits() {
         for low in [level, gaps[touched.index(gaps.len())]] {
             let depth = 10_f64.powf(thin);
             let outer = DoubleDouble::sum(low, depth);
-            let between = Ring::between(many.point(low.into()), many.point(outer));
-            let found = many.moments(&between);
+            let between = Ring::between(many.indenter().point(low.into()), many.indenter().point(outer));
+            let found = many.indenter().moments(&between);
             let mut sums = [DoubleDouble::ZERO; 3];
             for &gap in gaps.iter().filter(|&&gap| outer.value() > gap) {
                 let [inner, outer] = [low.into(), outer].map(|level| {
                     let above = level - DoubleDouble::from(gap);
-                    ball.point(if above.value() > 0.0 { above } else { 0.0.into() })
+                    ball.indenter().point(if above.value() > 0.0 { above } else { 0.0.into() })
                 });
-                let one = ball.moments(&Ring::between(inner, outer));
+                let one = ball.indenter().moments(&Ring::between(inner, outer));
                 for (sum, part) in sums.iter_mut().zip([one.width, one.first, one.second]) {
                     *sum = *sum + DoubleDouble::from(part);
                 }
@@ -134,9 +134,9 @@ fn loads_and_radii_of_asperities_are_inverted() {
     let worst = Worst::new("indentation from load and from radius, relative", 1e-14);
     for power in -12..1 {
         let level = 3e-6 * 10_f64.powi(power) * random.within(0.3, 1.0);
-        let load = profile.moments(&ring(&profile, 0.0, level)).first;
-        worst.relative(profile.indentation_for(load), level);
-        worst.relative(profile.level(profile.radius(level)), level);
+        let load = profile.indenter().moments(&ring(&profile, 0.0, level)).first;
+        worst.relative(profile.indenter().indentation_for(load), level);
+        worst.relative(profile.indenter().level(profile.indenter().radius(level)), level);
     }
 }
 
@@ -162,7 +162,7 @@ fn exponential_heights_creep_towards_gross_slip_exponentially() {
 fn sampled(profile: &Profile, levels: &[f64]) -> LoadCurve {
     let force = |&level: &f64| {
         let ring = ring(profile, 0.0, level);
-        2.0 * E_STAR * (ring.inner.radius * ring.depth + profile.moments(&ring).first)
+        2.0 * E_STAR * (ring.inner.radius * ring.depth + profile.indenter().moments(&ring).first)
     };
     let forces: Vec<f64> = levels.iter().map(force).collect();
     LoadCurve::new(levels, &forces, &elasticity()).unwrap()
@@ -180,7 +180,7 @@ fn a_sampled_curve_begins_as_a_power_and_converges() {
     let errors = [10, 20, 40, 80].map(|count| {
         let curve = Profile::LoadCurve(sampled(&law, &even(count, 1e-3)));
         let start = 0.7e-3 / f64::from(count);
-        worst.relative(curve.radius(start), law.radius(start));
+        worst.relative(curve.indenter().radius(start), law.indenter().radius(start));
         let (curved, exact) = (contact(curve, 0.93e-3), contact(law.clone(), 0.93e-3));
         let moved = 0.4 * exact.gross_slip_displacement();
         let force = |mut contact: Contact| {
@@ -201,7 +201,7 @@ fn the_stated_error_of_a_curve_covers_a_third_of_the_true_one() {
         let law = Profile::Sum(Sum::new(parts.to_vec()).unwrap());
         let levels: Vec<f64> =
             even(count, 1.0).iter().map(|share| 1e-3 * share * (1.0 - uneven + uneven * share)).collect();
-        let force = 2.0 * E_STAR * law.moments(&ring(&law, 0.0, depth * 1e-3)).first;
+        let force = 2.0 * E_STAR * law.indenter().moments(&ring(&law, 0.0, depth * 1e-3)).first;
         let preload = Preload::NormalForce(force);
         let mut exact = Contact::new(setup(law.clone(), preload)).unwrap();
         let mut curved = Contact::new(setup(Profile::LoadCurve(sampled(&law, &levels)), preload)).unwrap();
@@ -307,7 +307,7 @@ fn stuck_ellipses_are_stiffer_along_their_minor_axis() {
     circle.relative(compliance(sphere(0.01)), 1.7 / 1.4);
     let nearly = Ellipsoid::new([0.01, 0.01 * (1.0 + 1e-9)], Direction::X).unwrap();
     let next = Worst::new("an ellipse that is nearly a circle", 1e-9);
-    next.relative(Profile::Ellipsoid(nearly.clone()).radius(1e-6), sphere(0.01).radius(1e-6));
+    next.relative(Profile::Ellipsoid(nearly.clone()).indenter().radius(1e-6), sphere(0.01).indenter().radius(1e-6));
     next.relative(compliance(Profile::Ellipsoid(nearly)), 1.7 / 1.4);
     let unknown = setup(round_profile(), Preload::NormalForce(1.0));
     assert_eq!(Contact::new(unknown).map(|_| ()), Err(Error::BodiesNeeded));

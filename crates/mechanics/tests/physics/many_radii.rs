@@ -34,14 +34,14 @@ fn scene(random: &mut Random) -> (Profile, f64) {
                 let index = random.bits() as usize % all.len();
                 all.swap_remove(index)
             };
-            if random.bits().is_multiple_of(2) && profile.rim_radius().is_none() {
-                let rim = Profile::FlatPunch(FlatPunch::new(1.1 * profile.radius(depth)).unwrap());
+            if random.bits().is_multiple_of(2) && profile.indenter().rim_radius().is_none() {
+                let rim = Profile::FlatPunch(FlatPunch::new(1.1 * profile.indenter().radius(depth)).unwrap());
                 profile = Profile::Sum(Sum::new(vec![profile, rim]).unwrap());
             }
             return (profile, depth);
         }
     };
-    let depth = profile.level(flat * (1.0 + beyond));
+    let depth = profile.indenter().level(flat * (1.0 + beyond));
     if depth > 0.0 {
         (profile, depth)
     } else {
@@ -106,7 +106,7 @@ fn a_field_does_not_depend_on_how_many_radii_are_asked_for() {
             worst = worst.max(error);
             let held = error <= 1e-11;
             if !held {
-                let place = format!("(a - b)/a {:e}, r/a {}", 1.0 - profile.radius(0.0) / a, r / a);
+                let place = format!("(a - b)/a {:e}, r/a {}", 1.0 - profile.indenter().radius(0.0) / a, r / a);
                 let name = format!("{case}: {profile:?} pressed by {depth:e}, {place}, path {path:?}");
                 wrong.push((error, format!("{name}: {all:e} is not {alone:e}")));
             }

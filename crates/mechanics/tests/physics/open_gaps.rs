@@ -154,7 +154,7 @@ impl Ratios {
 
 /// One of the three ways to press a profile in up to a radius.
 fn preload(random: &mut Random, exact: &Profile, radius: f64) -> Preload {
-    let depth = Preload::Indentation(exact.level(radius));
+    let depth = Preload::Indentation(exact.indenter().level(radius));
     match random.bits() % 3 {
         0 => Preload::ContactRadius(radius),
         1 => depth,
@@ -299,7 +299,7 @@ fn load_curves(spread: Spread, kinds: u64, usual: f64) {
         let levels = spread(&mut random);
         let virgin = |depth: f64| contact(exact.clone(), Preload::Indentation(depth)).unwrap();
         let normal_forces: Vec<f64> = levels.iter().map(|&depth| virgin(depth).normal_force()).collect();
-        let radius = exact.radius(random.within(0.1, 0.97));
+        let radius = exact.indenter().radius(random.within(0.1, 0.97));
         let preload = preload(&mut random, &exact, radius);
         let curve = LoadCurve::new(&levels, &normal_forces, &bodies);
         let curve = curve.and_then(|curve| contact(Profile::LoadCurve(curve), preload));

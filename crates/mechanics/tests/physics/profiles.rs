@@ -24,21 +24,21 @@ fn numbers(text: &str) -> Vec<f64> {
 
 fn ring(profile: &Profile, outer: f64, depth: f64) -> Ring {
     let outer = DoubleDouble::from(outer);
-    Ring::between(profile.point(outer - DoubleDouble::from(depth)), profile.point(outer))
+    Ring::between(profile.indenter().point(outer - DoubleDouble::from(depth)), profile.indenter().point(outer))
 }
 
 fn evaluate(profile: &Profile, function: &str, a: &[f64]) -> f64 {
     match function {
-        "level" => profile.level(a[0]),
-        "slope" => profile.slope(a[0]),
-        "radius" => profile.radius(a[0]),
-        "indentation" => profile.indentation_for(a[0]),
-        "width" => profile.moments(&ring(profile, a[0], a[1])).width,
-        "first" => profile.moments(&ring(profile, a[0], a[1])).first,
-        "second" => profile.moments(&ring(profile, a[0], a[1])).second,
-        "kernel" => profile.kernel(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
-        "kernel_slope" => profile.kernel_slope(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
-        "lift" => profile.displacement_integral(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
+        "level" => profile.indenter().level(a[0]),
+        "slope" => profile.indenter().slope(a[0]),
+        "radius" => profile.indenter().radius(a[0]),
+        "indentation" => profile.indenter().indentation_for(a[0]),
+        "width" => profile.indenter().moments(&ring(profile, a[0], a[1])).width,
+        "first" => profile.indenter().moments(&ring(profile, a[0], a[1])).first,
+        "second" => profile.indenter().moments(&ring(profile, a[0], a[1])).second,
+        "kernel" => profile.indenter().kernel(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
+        "kernel_slope" => profile.indenter().kernel_slope(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
+        "lift" => profile.indenter().displacement_integral(&StressRadius::new(a[2]), &ring(profile, a[0], a[1])),
         other => panic!("no function {other}"),
     }
 }
@@ -53,8 +53,8 @@ fn cusp(profile: &Profile, function: &str, a: &[f64]) -> f64 {
         let v = ((point.radius - r) * (point.radius + r)).abs().sqrt();
         if v < 1e-2 * point.radius {
             size += match function {
-                "kernel" if r < point.radius => profile.slope(point.radius) * point.radius / v,
-                "kernel_slope" => profile.kernel_slope(&StressRadius::new(r), &ring).abs() * (point.radius / v).powi(2),
+                "kernel" if r < point.radius => profile.indenter().slope(point.radius) * point.radius / v,
+                "kernel_slope" => profile.indenter().kernel_slope(&StressRadius::new(r), &ring).abs() * (point.radius / v).powi(2),
                 "lift" if r > point.radius => depth * point.radius / v,
                 _ => 0.0,
             };
@@ -102,12 +102,12 @@ fn every_family_has_reference_values_deep_in_its_shape() {
         .collect();
     for family in families() {
         let example = (family.make)(&family.example()).unwrap();
-        if example.rim_radius().is_some_and(|rim| example.radius(0.0) >= rim) {
+        if example.indenter().rim_radius().is_some_and(|rim| example.indenter().radius(0.0) >= rim) {
             // Nothing is left of its shape but its edge.
             continue;
         }
-        let unit = example.radius(family.indentation);
-        let growth = |x: f64| example.level(2.0 * x) / example.level(x);
+        let unit = example.indenter().radius(family.indentation);
+        let growth = |x: f64| example.indenter().level(2.0 * x) / example.indenter().level(x);
         let is_power = close(growth(1e-2 * unit), growth(unit), 1e-9) && close(growth(0.4 * unit), growth(unit), 1e-9);
         let deep = |(parameters, x, name): &(Vec<f64>, f64, &str)| {
             if *name != family.name {
@@ -115,7 +115,7 @@ fn every_family_has_reference_values_deep_in_its_shape() {
             }
             let lengths = family.parameters.iter().zip(parameters).filter(|(parameter, _)| parameter.range.unit == "m");
             let least = lengths.map(|(_, number)| *number).fold(f64::INFINITY, f64::min);
-            let limit = (family.make)(parameters).unwrap().limit_radius();
+            let limit = (family.make)(parameters).unwrap().indenter().limit_radius();
             is_power || *x >= 10.0 * least || limit.is_some_and(|limit| *x >= 0.98 * limit)
         };
         assert!(
@@ -132,35 +132,35 @@ fn a_flat_punch_is_all_edge() {
     let punch = profile("flat_punch", "0.002");
     let (level, depth) = (3e-6, 1e-6);
     let ring = ring(&punch, level, depth);
-    let m = punch.moments(&ring);
+    let m = punch.indenter().moments(&ring);
     assert!(m.width + m.first + m.second < 1e-300);
-    assert!((punch.radius(1.0) - 0.002).abs() < 1e-300 && (punch.radius(0.0) - 0.002).abs() < 1e-300);
-    let kernel = punch.kernel(&StressRadius::new(0.0012), &ring);
+    assert!((punch.indenter().radius(1.0) - 0.002).abs() < 1e-300 && (punch.indenter().radius(0.0) - 0.002).abs() < 1e-300);
+    let kernel = punch.indenter().kernel(&StressRadius::new(0.0012), &ring);
     assert!((kernel / (depth / 0.0016) - 1.0).abs() < 1e-15);
-    assert!(punch.kernel(&StressRadius::new(0.002), &ring).is_infinite());
-    assert!(punch.kernel(&StressRadius::new(0.003), &ring) < 1e-300);
-    assert!((punch.indentation_for(1e-8) / 5e-6 - 1.0).abs() < 1e-15);
-    assert!(punch.limit_radius().is_none() && punch.check_radius(0.002).is_ok());
+    assert!(punch.indenter().kernel(&StressRadius::new(0.002), &ring).is_infinite());
+    assert!(punch.indenter().kernel(&StressRadius::new(0.003), &ring) < 1e-300);
+    assert!((punch.indenter().indentation_for(1e-8) / 5e-6 - 1.0).abs() < 1e-15);
+    assert!(punch.indenter().limit_radius().is_none() && punch.indenter().check_radius(0.002).is_ok());
 }
 
 #[test]
 fn a_punch_caps_a_sum() {
     let (sphere, sum) = (profile("sphere", "0.01"), profile("sum", "sphere 0.01 + flat_punch 0.001"));
-    let rim = sphere.level(0.001);
-    assert!((sum.radius(2.0 * rim) - 0.001).abs() < 1e-18);
+    let rim = sphere.indenter().level(0.001);
+    assert!((sum.indenter().radius(2.0 * rim) - 0.001).abs() < 1e-18);
     // Half of the ring's levels lie on the face, half at the edge.
     let ring = ring(&sum, 1.5 * rim, rim);
-    let face = Ring::between(sphere.point(DoubleDouble::from(0.5 * rim)), sphere.point(DoubleDouble::from(rim)));
-    let (m, n) = (sum.moments(&ring), sphere.moments(&face));
+    let face = Ring::between(sphere.indenter().point(DoubleDouble::from(0.5 * rim)), sphere.indenter().point(DoubleDouble::from(rim)));
+    let (m, n) = (sum.indenter().moments(&ring), sphere.indenter().moments(&face));
     assert!((m.width / n.width - 1.0).abs() < 1e-14);
     assert!((m.first / (n.first + 0.5 * rim * n.width) - 1.0).abs() < 1e-14);
     let at = StressRadius::new(0.0008);
-    let kernel = sphere.kernel(&at, &face) + 0.5 * rim / 0.0006;
-    assert!((sum.kernel(&at, &ring) / kernel - 1.0).abs() < 1e-14);
-    assert!(sum.kernel(&StressRadius::new(0.001), &ring).is_infinite());
+    let kernel = sphere.indenter().kernel(&at, &face) + 0.5 * rim / 0.0006;
+    assert!((sum.indenter().kernel(&at, &ring) / kernel - 1.0).abs() < 1e-14);
+    assert!(sum.indenter().kernel(&StressRadius::new(0.001), &ring).is_infinite());
     // int_0^d X dy = int_0^rim sqrt(R y) dy + (d - rim) b.
     let load = 2.0 / 3.0 * 0.001 * rim + 0.5 * rim * 0.001;
-    assert!((sum.indentation_for(load) / (1.5 * rim) - 1.0).abs() < 1e-14);
+    assert!((sum.indenter().indentation_for(load) / (1.5 * rim) - 1.0).abs() < 1e-14);
 }
 
 #[test]
@@ -177,42 +177,42 @@ fn infinities_are_where_they_belong_and_never_nan() {
         ("sum", "cone 0.3 + truncated_sphere 0.01 0.001", Some(0.001)),
     ] {
         let profile = profile(family, parameters);
-        assert_eq!(profile.singular_radii().last().map(|r| r.to_bits()), singular.map(f64::to_bits), "{family}");
-        let d = profile.level(0.002);
+        assert_eq!(profile.indenter().singular_radii().last().map(|r| r.to_bits()), singular.map(f64::to_bits), "{family}");
+        let d = profile.indenter().level(0.002);
         let whole = ring(&profile, d, d);
         for r in [0.0, 1e-300, 1e-20, 0.001, 0.001 * (1.0 + 1e-15), 0.002, 0.002 * (1.0 - 1e-15), 0.003, 1e9] {
             let at = StressRadius::new(r);
-            let (k, s) = (profile.kernel(&at, &whole), profile.kernel_slope(&at, &whole));
+            let (k, s) = (profile.indenter().kernel(&at, &whole), profile.indenter().kernel_slope(&at, &whole));
             assert!(!k.is_nan() && k >= 0.0 && !s.is_nan(), "{family} {r}: {k} {s}");
             assert!(
-                profile.displacement_integral(&at, &whole) >= 0.0 && profile.arc(&at, &whole) >= 0.0,
+                profile.indenter().displacement_integral(&at, &whole) >= 0.0 && profile.indenter().arc(&at, &whole) >= 0.0,
                 "{family} {r}"
             );
         }
         if let Some(r) = singular {
-            assert!(profile.kernel(&StressRadius::new(r), &whole).is_infinite(), "{family}");
+            assert!(profile.indenter().kernel(&StressRadius::new(r), &whole).is_infinite(), "{family}");
         }
         let nothing = ring(&profile, 0.0, 0.0);
-        assert!(profile.kernel(&StressRadius::new(0.0), &nothing).is_finite() || singular.is_some(), "{family}");
-        assert!(profile.moments(&nothing).first < 1e-300, "{family}");
+        assert!(profile.indenter().kernel(&StressRadius::new(0.0), &nothing).is_finite() || singular.is_some(), "{family}");
+        assert!(profile.indenter().moments(&nothing).first < 1e-300, "{family}");
     }
 }
 
 #[test]
 fn a_profile_that_ends_says_where() {
     let sphere = profile("exact_sphere", "0.01");
-    assert!(matches!(sphere.check_radius(0.01), Err(Error::BeyondProfile { .. })));
-    assert!(sphere.check_radius(0.00901).is_err() && sphere.check_radius(0.00899).is_ok());
-    assert!(sphere.radius(1e6) <= 0.00901);
+    assert!(matches!(sphere.indenter().check_radius(0.01), Err(Error::BeyondProfile { .. })));
+    assert!(sphere.indenter().check_radius(0.00901).is_err() && sphere.indenter().check_radius(0.00899).is_ok());
+    assert!(sphere.indenter().radius(1e6) <= 0.00901);
     let radii: Vec<f64> = (0..50u32).map(|i| 1e-4 * f64::from(i)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| 20.0 * r * r).collect();
     let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
-    let limit = table.limit_radius().unwrap();
+    let limit = table.indenter().limit_radius().unwrap();
     assert!((limit / radii[49] - 1.0).abs() < 1e-15);
-    assert!((table.radius(1.0) / limit - 1.0).abs() < 1e-15);
-    assert!(matches!(table.check_radius(limit), Err(Error::BeyondProfile { .. })));
+    assert!((table.indenter().radius(1.0) / limit - 1.0).abs() < 1e-15);
+    assert!(matches!(table.indenter().check_radius(limit), Err(Error::BeyondProfile { .. })));
     let beyond = ring(&table, 1.0, 1.0);
-    assert!(table.kernel(&StressRadius::new(0.0), &beyond).is_finite() && table.moments(&beyond).first.is_finite());
+    assert!(table.indenter().kernel(&StressRadius::new(0.0), &beyond).is_finite() && table.indenter().moments(&beyond).first.is_finite());
 }
 
 /// Any profile at all, with a contact radius that suits it.
@@ -241,7 +241,7 @@ fn any_profile() -> impl Strategy<Value = (Profile, f64)> {
             let sum = || Profile::Sum(Sum::new((0..=families().len()).map(one).filter(has_no_rim).collect()).unwrap());
             let profile = if index <= families().len() { one(index) } else { sum() };
             // Beyond a flat end, within what is known.
-            let (core, end) = (profile.radius(0.0), profile.limit_radius().unwrap_or(f64::INFINITY));
+            let (core, end) = (profile.indenter().radius(0.0), profile.indenter().limit_radius().unwrap_or(f64::INFINITY));
             let radius = if core < 0.9 * a { a } else { core / share.max(0.1) };
             (profile, radius.min(core + 0.9 * (end - core)))
         })
@@ -249,7 +249,7 @@ fn any_profile() -> impl Strategy<Value = (Profile, f64)> {
 }
 
 fn has_no_rim(profile: &Profile) -> bool {
-    profile.rim_radius().is_none()
+    profile.indenter().rim_radius().is_none()
 }
 
 /// A profile with parameters anywhere in their ranges.
@@ -273,25 +273,25 @@ proptest! {
 
     #[test]
     fn the_inverse_is_one((profile, a) in any_profile(), share in 0.0..1.0f64) {
-        let core = profile.radius(0.0);
+        let core = profile.indenter().radius(0.0);
         let x = core + share * (a - core);
-        let y = profile.level(x);
+        let y = profile.indenter().level(x);
         let tolerance = if matches!(profile, Profile::Tabulated(_) | Profile::Sum(_)) { 3e-13 } else { 3e-15 };
         // The level is a double, whose last place moves the radius of a power of 0.1 by ten of its own.
-        let tolerance = tolerance * (y / (x * profile.slope(x))).max(1.0);
-        prop_assert!(close(profile.radius(y), x, tolerance), "{} {}", profile.radius(y), x);
+        let tolerance = tolerance * (y / (x * profile.indenter().slope(x))).max(1.0);
+        prop_assert!(close(profile.indenter().radius(y), x, tolerance), "{} {}", profile.indenter().radius(y), x);
     }
 
     #[test]
     fn adjacent_rings_add_up(
         (profile, a) in any_profile(), low in 0.01..0.98f64, cut in 0.01..0.99f64, r in 0.0..1.3f64,
     ) {
-        let y = profile.level(a);
-        let point = |share: f64| profile.point(DoubleDouble::from(y) * share);
+        let y = profile.indenter().level(a);
+        let point = |share: f64| profile.indenter().point(DoubleDouble::from(y) * share);
         let (inner, middle, outer) = (point(low), point(low + cut * (1.0 - low)), point(1.0));
         let (below, above, whole) =
             (Ring::between(inner, middle), Ring::between(middle, outer), Ring::between(inner, outer));
-        let (m, n, w) = (profile.moments(&below), profile.moments(&above), profile.moments(&whole));
+        let (m, n, w) = (profile.indenter().moments(&below), profile.indenter().moments(&above), profile.indenter().moments(&whole));
         let sum = Moments {
             width: m.width + n.width,
             first: m.first + above.depth * m.width + n.first,
@@ -304,11 +304,11 @@ proptest! {
         let at = StressRadius::new(r * a);
         let apart = [inner, middle, outer].iter().all(|point| (point.radius / at.radius - 1.0).abs() > 1e-3);
         if apart {
-            let (one, two) = (profile.kernel(&at, &below) + profile.kernel(&at, &above), profile.kernel(&at, &whole));
+            let (one, two) = (profile.indenter().kernel(&at, &below) + profile.indenter().kernel(&at, &above), profile.indenter().kernel(&at, &whole));
             prop_assert!(close(one, two, tolerance), "{one} {two}");
-            let one = profile.displacement_integral(&at, &below) + profile.displacement_integral(&at, &above) +
-                above.depth * profile.arc(&at, &below);
-            prop_assert!(close(one, profile.displacement_integral(&at, &whole), tolerance), "{one}");
+            let one = profile.indenter().displacement_integral(&at, &below) + profile.indenter().displacement_integral(&at, &above) +
+                above.depth * profile.indenter().arc(&at, &below);
+            prop_assert!(close(one, profile.indenter().displacement_integral(&at, &whole), tolerance), "{one}");
         }
     }
 
@@ -316,15 +316,15 @@ proptest! {
     fn two_halves_are_the_whole(a in 1e-6..1.0f64, n in 0.2..9.0f64, r in 0.0..1.0f64, low in 0.0..0.99f64) {
         let law = |share: f64| Profile::PowerLaw(PowerLaw::new(n, share * 0.1 * a.powf(1.0 - n)).unwrap());
         let (whole, sum) = (law(1.0), Profile::Sum(Sum::new(vec![law(0.5), law(0.5)]).unwrap()));
-        let y = whole.level(a);
+        let y = whole.indenter().level(a);
         let (one, two) = (ring(&whole, y, y * (1.0 - low)), ring(&sum, y, y * (1.0 - low)));
-        let (m, n) = (whole.moments(&one), sum.moments(&two));
+        let (m, n) = (whole.indenter().moments(&one), sum.indenter().moments(&two));
         prop_assert!(close(m.width, n.width, 1e-12) && close(m.first, n.first, 1e-12) &&
             close(m.second, n.second, 1e-12), "{m:?} {n:?}");
         let at = StressRadius::new(r * a);
         if (one.inner.radius / at.radius - 1.0).abs() > 1e-3 && r < 0.999 {
-            prop_assert!(close(whole.kernel(&at, &one), sum.kernel(&at, &two), 1e-12));
-            prop_assert!(close(whole.displacement_integral(&at, &one), sum.displacement_integral(&at, &two), 1e-12));
+            prop_assert!(close(whole.indenter().kernel(&at, &one), sum.indenter().kernel(&at, &two), 1e-12));
+            prop_assert!(close(whole.indenter().displacement_integral(&at, &one), sum.indenter().displacement_integral(&at, &two), 1e-12));
         }
     }
 
@@ -335,31 +335,31 @@ proptest! {
     ) {
         let y = 10f64.powf(decade);
         let ring = ring(&profile, y, share * y);
-        if profile.check_radius(ring.outer.radius).is_err() {
+        if profile.indenter().check_radius(ring.outer.radius).is_err() {
             return Ok(());
         }
-        let m = profile.moments(&ring);
+        let m = profile.indenter().moments(&ring);
         prop_assert!(m.width >= 0.0 && m.first >= 0.0 && m.second >= 0.0, "{m:?}");
         let anywhere = StressRadius::new(r * ring.outer.radius);
         let ends = [StressRadius::of_point(&ring.inner), StressRadius::of_point(&ring.outer)];
         for at in [anywhere, StressRadius::new(0.0), ends[0], ends[1]] {
-            prop_assert!(profile.kernel(&at, &ring) >= 0.0, "{at:?}");
-            prop_assert!(!profile.kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
-            prop_assert!(profile.displacement_integral(&at, &ring) >= 0.0 && profile.arc(&at, &ring) >= 0.0, "{at:?}");
+            prop_assert!(profile.indenter().kernel(&at, &ring) >= 0.0, "{at:?}");
+            prop_assert!(!profile.indenter().kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
+            prop_assert!(profile.indenter().displacement_integral(&at, &ring) >= 0.0 && profile.indenter().arc(&at, &ring) >= 0.0, "{at:?}");
         }
-        prop_assert!(profile.indentation_for(y * y) > 0.0);
+        prop_assert!(profile.indenter().indentation_for(y * y) > 0.0);
     }
 
     #[test]
     fn loads_of_any_size_have_an_indentation((profile, a) in any_profile(), decade in -20.0..2.0f64) {
-        let load = profile.level(a) * a * 10f64.powf(decade);
-        let d = profile.indentation_for(load);
+        let load = profile.indenter().level(a) * a * 10f64.powf(decade);
+        let d = profile.indenter().indentation_for(load);
         prop_assert!(d > 0.0 && d.is_finite());
-        prop_assume!(profile.check_radius(profile.radius(d)).is_ok());
+        prop_assume!(profile.indenter().check_radius(profile.indenter().radius(d)).is_ok());
         // d load = X dd, and X lies between that at half the indentation and that at all of it.
         let ratio = load / d;
-        prop_assert!(ratio <= profile.radius(d) * (1.0 + 1e-12) &&
-            ratio >= 0.5 * profile.radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
+        prop_assert!(ratio <= profile.indenter().radius(d) * (1.0 + 1e-12) &&
+            ratio >= 0.5 * profile.indenter().radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
     }
 
     #[test]
@@ -370,10 +370,10 @@ proptest! {
         let cone = |share: f64| Profile::TruncatedCone(TruncatedCone::new(share * slope, core).unwrap());
         let profile = if halves { Profile::Sum(Sum::new(vec![cone(0.5), cone(0.5)]).unwrap()) } else { cone(1.0) };
         let load = core * core * 10f64.powf(depth);
-        let d = profile.indentation_for(load);
+        let d = profile.indenter().indentation_for(load);
         // load = int X dd, and X lies between the core and X(d).
         let ratio = load / d;
-        prop_assert!(ratio >= core * (1.0 - 1e-12) && ratio <= profile.radius(d) * (1.0 + 1e-12), "{ratio} {core}");
+        prop_assert!(ratio >= core * (1.0 - 1e-12) && ratio <= profile.indenter().radius(d) * (1.0 + 1e-12), "{ratio} {core}");
     }
 
     #[test]
@@ -382,9 +382,9 @@ proptest! {
         let sphere = || Profile::Sphere(Sphere::new(10.0 * edge).unwrap());
         let cone = Profile::TruncatedCone(TruncatedCone::new(slope, edge * (1.0 + beyond)).unwrap());
         let sum = Profile::Sum(Sum::new(vec![cone, sphere()]).unwrap());
-        let level = sphere().level(edge);
-        prop_assert!(close(sum.radius(level), edge, 1e-14), "{} {edge}", sum.radius(level));
-        let load = sphere().moments(&ring(&sphere(), level, level)).first;
-        prop_assert!(close(sum.indentation_for(load), level, 1e-13), "{} {level}", sum.indentation_for(load));
+        let level = sphere().indenter().level(edge);
+        prop_assert!(close(sum.indenter().radius(level), edge, 1e-14), "{} {edge}", sum.indenter().radius(level));
+        let load = sphere().indenter().moments(&ring(&sphere(), level, level)).first;
+        prop_assert!(close(sum.indenter().indentation_for(load), level, 1e-13), "{} {level}", sum.indenter().indentation_for(load));
     }
 }

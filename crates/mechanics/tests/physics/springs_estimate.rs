@@ -77,7 +77,7 @@ struct Outcome {
 
 fn play(random: &mut Random, kind: u64) -> Option<Outcome> {
     let (profile, mut kinks) = body(random, kind);
-    let depth = if kind == 9 { 0.1 } else { profile.level(random.within(0.45, 0.7)) };
+    let depth = if kind == 9 { 0.1 } else { profile.indenter().level(random.within(0.45, 0.7)) };
     let unloaded = random.bits().is_multiple_of(6);
     let setup = Setup {
         profile: profile.clone(),
@@ -123,7 +123,7 @@ fn play(random: &mut Random, kind: u64) -> Option<Outcome> {
     let mean = figures.normal_force / (std::f64::consts::PI * edge * edge);
     let unit = setup.friction * figures.max_pressure.unwrap_or(mean);
     kinks.push(0.0);
-    kinks.extend(profile.singular_radii());
+    kinks.extend(profile.indenter().singular_radii());
     let away = OFF * 2.0 * reach / count.floor();
     let stress = (0..60)
         .map(|_| edge * random.within(0.0, 1.0))

@@ -206,7 +206,7 @@ proptest! {
         let t_of = |x: f64| ((x - flat) * (x + flat)).max(0.0).sqrt();
         let cone = |x: f64| slope * x * t_of(x).atan2(flat);
         let scale = cone(1.0);
-        let unit = Profile::PowerLaw(PowerLaw::new(power, 1e-3).unwrap()).level(1.0) / 1e-3;
+        let unit = Profile::PowerLaw(PowerLaw::new(power, 1e-3).unwrap()).indenter().level(1.0) / 1e-3;
         let parts = vec![
             Profile::PowerLaw(PowerLaw::new(power, scale / unit).unwrap()),
             Profile::TruncatedCone(TruncatedCone::new(slope, flat).unwrap()),

@@ -203,8 +203,8 @@ fn every_profile_has_the_sum_of_its_point_forces() {
         let contact = moved(profile.clone(), depth, &[0.8, -0.5, 0.1]);
         let a = contact.contact_radius();
         // Kinks of the slip history lie where the three moves have begun to slip.
-        let kinks = [0.2, 0.35, 0.7].map(|level| profile.radius(level * depth));
-        let mut breaks: Vec<f64> = profile.knots_below(a).into_iter().chain(kinks).chain([0.0, a]).collect();
+        let kinks = [0.2, 0.35, 0.7].map(|level| profile.indenter().radius(level * depth));
+        let mut breaks: Vec<f64> = profile.indenter().knots_below(a).into_iter().chain(kinks).chain([0.0, a]).collect();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         let field = second(&contact);

@@ -136,7 +136,7 @@ impl Part {
         let phi = t.atan2(b);
         match self {
             Part::RoundedCone(slope, b) if over <= 0.0 => 2.0 * slope * x / b,
-            Part::Power(n, c) => self.profile().level(1.0) / c * c * n * x.powf(n - 1.0),
+            Part::Power(n, c) => self.profile().indenter().level(1.0) / c * c * n * x.powf(n - 1.0),
             _ if over <= 0.0 => 0.0,
             Part::TruncatedCone(slope, b) => slope * (phi + b / t),
             Part::TruncatedSphere(radius, b) => (b * b + 2.0 * t * t) / (radius * t),
@@ -186,9 +186,9 @@ impl Scene {
         follow(&mut contact, &[0.8, -0.5, 0.1].map(|share| share * full));
         let a = contact.contact_radius();
         // Where the three moves have begun to slip.
-        let [one, two, three] = [0.2, 0.35, 0.7].map(|level| profile.radius(level * depth));
+        let [one, two, three] = [0.2, 0.35, 0.7].map(|level| profile.indenter().radius(level * depth));
         let rings = vec![(0.0, one, 0.0), (one, two, 1.0), (two, three, -1.0), (three, a, 1.0)];
-        let knots = [0.0].into_iter().chain(profile.knots_below(a)).collect();
+        let knots = [0.0].into_iter().chain(profile.indenter().knots_below(a)).collect();
         Scene { name, contact, knots, rings, slope }
     }
 
@@ -264,7 +264,7 @@ fn scenes() -> Vec<Scene> {
     let radii: Vec<f64> = [0.0, 0.1, 0.13, 0.5, 0.51, 0.9, 1.4].to_vec();
     let heights: Vec<f64> = radii.iter().map(|r| 0.02 * r * r * (1.0 + r)).collect();
     let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
-    let own = table.clone();
+    let own = table.indenter();
     scenes.push(Scene::new("table".into(), table, 0.06, Box::new(move |base, above| own.slope(base + above))));
     scenes
 }

@@ -52,7 +52,7 @@ fn estimates_of_sums_with_tables_are_honest() {
         let share = random.within(0.4, 0.85);
         let preload = match random.bits() % 2 {
             0 => Preload::ContactRadius(share),
-            _ => Preload::Indentation(body.level(share)),
+            _ => Preload::Indentation(body.indenter().level(share)),
         };
         let contact = |profile| Contact::new(Setup { profile, elasticity, friction, preload });
         let (Ok(mut exact), Ok(mut found)) = (contact(body), contact(table)) else { continue };
@@ -157,7 +157,7 @@ fn a_sum_ends_where_its_own_slope_falls() {
     let hollow = Sum::new(vec![ball(1.0), part(50, |r| -r * r)]);
     assert!(matches!(hollow, Err(Error::NotConvexEnough { radius }) if radius < 1e-2), "{hollow:?}");
     let alone = Profile::Sum(Sum::new(vec![part(50, |r| r * r - r.powi(4))]).unwrap());
-    assert!(alone.limit_radius().is_some_and(|limit| (limit - (3.0_f64 / 8.0).sqrt()).abs() < 1e-2));
+    assert!(alone.indenter().limit_radius().is_some_and(|limit| (limit - (3.0_f64 / 8.0).sqrt()).abs() < 1e-2));
 }
 
 #[test]

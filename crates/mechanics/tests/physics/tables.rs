@@ -62,7 +62,7 @@ fn a_tabulated_parabola_is_the_sphere() {
     let sphere = Profile::Sphere(Sphere::new(0.01).unwrap());
     for share in [1e-3, 0.1, 0.5, 0.99] {
         let x = share * radii[59];
-        assert!((table.level(x) / sphere.level(x) - 1.0).abs() < 1e-12);
+        assert!((table.indenter().level(x) / sphere.indenter().level(x) - 1.0).abs() < 1e-12);
     }
 }
 
@@ -71,10 +71,10 @@ fn a_hollow_is_refused_where_g_falls() {
     let radii: Vec<f64> = (0..100u32).map(|i| 0.01 * f64::from(i)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| r * r - 0.9 * r.powi(4)).collect();
     let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
-    let limit = table.limit_radius().unwrap();
+    let limit = table.indenter().limit_radius().unwrap();
     // g = 2 x^2 - 0.9 (8/3) x^4: g' = 0 at x^2 = 4/9.6.
     assert!((limit - (4.0f64 / 9.6).sqrt()).abs() < 2e-3, "{limit}");
-    assert_eq!(table.check_radius(limit), Err(Error::NotConvexEnough { radius: limit }));
+    assert_eq!(table.indenter().check_radius(limit), Err(Error::NotConvexEnough { radius: limit }));
     let hole: Vec<f64> = radii.iter().map(|r| -r * r).collect();
     assert!(matches!(Tabulated::new(&radii, &hole), Err(Error::NotConvexEnough { radius }) if radius <= 0.0));
 }
@@ -92,7 +92,7 @@ fn the_interpolation_converges() {
     let error = |n: u32| {
         let radii: Vec<f64> = (0..=n).map(|i| 1.5 * f64::from(i) / f64::from(n)).collect();
         let heights: Vec<f64> = radii.iter().map(|r| r.cosh() - 1.0).collect();
-        (Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()).level(1.0) / exact - 1.0).abs()
+        (Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()).indenter().level(1.0) / exact - 1.0).abs()
     };
     let errors: Vec<f64> = [15, 30, 60, 120, 240].into_iter().map(error).collect();
     assert!(errors.windows(2).all(|pair| pair[1] < 0.19 * pair[0]), "{errors:?}");

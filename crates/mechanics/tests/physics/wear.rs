@@ -66,7 +66,7 @@ fn springs_that_are_worn_in_thousands_of_steps_tend_to_the_limit() {
         let count = 4000;
         let width = edge / f64::from(count);
         let places: Vec<f64> = (0..count).map(|index| (f64::from(index) + 0.5) * width).collect();
-        let unworn: Vec<f64> = places.iter().map(|&x| profile.level(x)).collect();
+        let unworn: Vec<f64> = places.iter().map(|&x| profile.indenter().level(x)).collect();
         // Each spring loses g by its pressure times its slip in a cycle: at most a hundredth of its indentation.
         let after = |steps: usize| {
             let mut levels = unworn.clone();
@@ -122,12 +122,12 @@ fn shape_depth_and_volume_are_integrals_of_g() {
             let worn = WornContact::new(&contact, share * contact.gross_slip_displacement()).unwrap();
             let (stick, end) = (worn.stick_radius(), worn.worn_radius());
             if !worn.wears() {
-                assert!(profile.rim_radius().is_some() && (worn.removed_volume(), end) == (0.0, stick), "{profile:?}");
+                assert!(profile.indenter().rim_radius().is_some() && (worn.removed_volume(), end) == (0.0, stick), "{profile:?}");
                 continue;
             }
-            let unworn = |x: f64| profile.level(x);
+            let unworn = |x: f64| profile.indenter().level(x);
             let limit = |x: f64| if x <= stick { unworn(x) } else { depth };
-            let mut kinks = profile.knots_below(end);
+            let mut kinks = profile.indenter().knots_below(end);
             kinks.truncate(60);
             kinks.push(stick);
             for part in [0.3, 1.0 - 1e-9, 1.0 + 1e-3, 1.5] {
@@ -136,9 +136,9 @@ fn shape_depth_and_volume_are_integrals_of_g() {
                 heights.close(found.before[0], height(&unworn, &kinks, r, depth), depth);
                 heights.close(found.after[0], height(&limit, &kinks, r, depth), depth);
             }
-            if profile.rim_radius().is_none_or(|rim| end < rim) {
+            if profile.indenter().rim_radius().is_none_or(|rim| end < rim) {
                 // The worn surface meets the unworn.
-                let unit = depth - profile.level(stick);
+                let unit = depth - profile.indenter().level(stick);
                 heights.close(height(&limit, &kinks, end, depth), height(&unworn, &kinks, end, depth), unit);
             }
             // By shells of the heights, with t^2 = r^2 - c^2, in which they have no vertical tangent.
@@ -231,7 +231,7 @@ fn the_table_of_the_limit_carries_on_from_it() {
             let worn = WornContact::new(&unworn, amplitude).unwrap();
             let Some(table) = worn.table_while(&|| true) else {
                 // Only where a table has no vertical edge to end in, or nothing wears.
-                assert!(profile.rim_radius().is_some(), "{profile:?} {share}");
+                assert!(profile.indenter().rim_radius().is_some(), "{profile:?} {share}");
                 continue;
             };
             let after = Profile::Tabulated(Tabulated::new(&table.radii, &table.heights).unwrap());
@@ -249,11 +249,11 @@ fn the_table_of_the_limit_carries_on_from_it() {
             // A lighter contact within the disc is as it was, and a heavier one is possible.
             let radius = worn.stick_radius() - 1.5 * table.rise_width;
             if radius > 0.5 * worn.stick_radius() {
-                let shallow = profile.level(radius);
+                let shallow = profile.indenter().level(radius);
                 let forces = [&after, &profile].map(|profile| contact(profile.clone(), shallow).normal_force());
                 inside.relative(forces[0], forces[1]);
             }
-            if profile.limit_radius().is_none() {
+            if profile.indenter().limit_radius().is_none() {
                 assert!(contact(after, 1.2 * depth).contact_radius() > worn.worn_radius(), "{profile:?} {share}");
             }
         }

@@ -85,10 +85,10 @@ fn same(one: &SimulateReply, other: &SimulateReply) -> bool {
 
 /// All numbers are finite, but for those that the contract has as `null` where they are infinite.
 fn numbers(simulation: &Simulation, reply: &SimulateReply) {
-    let profile = &simulation.setup.profile;
+    let indenter = simulation.setup.profile.indenter();
     let edge = reply.steps[reply.steps.len() - 1].contact_radius;
-    let spikes = profile.singular_radii();
-    let rim = profile.rim_radius();
+    let spikes = indenter.singular_radii();
+    let rim = indenter.rim_radius();
     let spike = |radius: f64, edge: f64| {
         // A radius whose square is zero is the centre.
         let radius = if radius * radius > 0.0 { radius } else { 0.0 };

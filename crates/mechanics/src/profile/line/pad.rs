@@ -2,7 +2,7 @@
 //!
 //! Over s = sqrt(t^2 - b^2), dG/ds = (s/R) arctan(s/b) (Ciavarella, Hills & Monno 1998).
 
-use crate::cells::shape::{End, Kink, Powers, Shape, above};
+use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
 use crate::cells::stages::Stages;
 
 /// G of a pad that is flat up to b, with edges of the radius R, as a body of revolution has g.
@@ -20,8 +20,8 @@ impl PadFace {
 }
 
 impl Shape for PadFace {
-    fn kinks(&self) -> Vec<Kink> {
-        vec![Kink { radius: self.flat_half_width, powers: Powers::All(2) }]
+    fn kinks(&self) -> Kinks {
+        Kinks::from([Kink::new(self.flat_half_width, Powers::All(2))])
     }
 
     fn level(&self, x: f64) -> f64 {

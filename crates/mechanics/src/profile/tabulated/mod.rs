@@ -16,11 +16,12 @@ mod stated_error;
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use crate::cells::Cells;
-use crate::cells::shape::{End, EndKind, Kink, Powers, Shape};
+use crate::cells::shape::{End, EndKind, Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
 use crate::error::{Error, TableFault};
-use crate::numerics::double_double::DoubleDouble;
 use crate::range;
 pub use interpolation_error::InterpolationError;
 use interpolation_error::TableGap;
@@ -38,8 +39,8 @@ pub struct Tabulated {
     /// Its gaps, with the interpolation error of each; empty without points.
     gaps: Vec<TableGap>,
     stages: Stages,
-    /// Where the surface leaves the plane, and the last radius, m.
-    flat_radius: f64,
+    kinks: Kinks,
+    /// The last radius, m.
     end: f64,
     /// The first radius at which g falls, if it does, m.
     falls: Option<f64>,
@@ -120,7 +121,12 @@ impl Tabulated {
                 None => Error::Table { fault: TableFault::HeightNeverRises, index: last },
             });
         };
-        let cells = Cells::new(built.cells, DoubleDouble::ZERO);
+        let mut kinks: Vec<Kink> = built.cells.iter().map(|cell| Kink::new(cell.kink, Powers::All(1))).collect();
+        kinks.dedup_by(|a, b| a.at.radius.to_bits() == b.at.radius.to_bits());
+        if flat_radius <= 0.0 {
+            kinks[0].powers = Powers::Odd;
+        }
+        let cells = Cells::new(built.cells, None);
         let end = cells.top.radius;
         Ok(Tabulated {
             radii: Vec::new(),
@@ -129,16 +135,11 @@ impl Tabulated {
             stated_errors: Vec::new(),
             gaps: Vec::new(),
             stages: Stages::whole(cells),
-            flat_radius,
+            kinks: kinks.into(),
             end,
             // A curve that was cut where g falls ends there, however that radius is rounded.
             falls: built.falls_at.map(|radius| if whole { radius.min(end) } else { end }),
         })
-    }
-
-    /// The radius of a flat core, m.
-    pub(super) fn flat_radius(&self) -> f64 {
-        self.flat_radius
     }
 
     /// Where the cells end, m: as part of a sum g may have fallen before.
@@ -178,11 +179,8 @@ impl Tabulated {
 }
 
 impl Shape for Tabulated {
-    fn kinks(&self) -> Vec<Kink> {
-        let kink = |radius: f64, powers| Kink { radius, powers };
-        let tip = (self.flat_radius <= 0.0).then_some(kink(0.0, Powers::Odd));
-        let knots = self.all_cells().into_iter().flat_map(|cells| &cells.kinks);
-        tip.into_iter().chain(knots.map(|&radius| kink(radius, Powers::All(1)))).collect()
+    fn kinks(&self) -> Kinks {
+        Arc::clone(&self.kinks)
     }
 
     fn level(&self, x: f64) -> f64 {

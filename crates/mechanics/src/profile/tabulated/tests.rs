@@ -45,8 +45,8 @@ fn all(table: &Tabulated) -> &Cells {
 
 /// int x dg, m^2.
 fn load(profile: &Profile, x: f64) -> f64 {
-    let ring = Ring::between(profile.point(0.0.into()), profile.point(profile.level(x).into()));
-    ring.inner.radius * ring.depth + profile.moments(&ring).first
+    let ring = Ring::between(profile.indenter().point(0.0.into()), profile.indenter().point(profile.level(x).into()));
+    ring.inner.radius * ring.depth + profile.indenter().moments(&ring).first
 }
 
 fn worst(pairs: &[(f64, f64)]) -> f64 {
@@ -64,9 +64,9 @@ fn a_table_is_a_sum_of_rounded_punches() {
             let y = sum.level(x);
             pairs.push((table.level(x), y));
             pairs.push((table.slope(x), sum.slope(x)));
-            pairs.push((table.radius(y), x));
+            pairs.push((table.indenter().radius(y), x));
             pairs.push((load(&table, x), load(&sum, x)));
-            pairs.push((table.indentation_for(load(&sum, x)), y));
+            pairs.push((table.indenter().indentation_for(load(&sum, x)), y));
         }
         assert!(worst(&pairs) < 3e-14, "{idle}: {:e}", worst(&pairs));
     }
@@ -80,18 +80,18 @@ fn rings_of_a_table_are_those_of_the_sum() {
         for (inner, outer) in [(0.0, 1.2), (0.3, 1.1), (0.357, 0.358), (0.0130, 0.0132), (0.95, 0.95 + 1e-9)] {
             let ring = |profile: &Profile| {
                 let level = |x: f64| DoubleDouble::from(sum.level(x));
-                Ring::between(profile.point(level(inner)), profile.point(level(outer)))
+                Ring::between(profile.indenter().point(level(inner)), profile.indenter().point(level(outer)))
             };
             let (ours, exact) = (ring(&table), ring(&sum));
-            let (m, n) = (table.moments(&ours), sum.moments(&exact));
+            let (m, n) = (table.indenter().moments(&ours), sum.indenter().moments(&exact));
             let error = worst(&[(m.width, n.width), (m.first, n.first), (m.second, n.second)]);
             assert!(error < 1e-12, "{idle} {inner} {outer}: {error:e}");
             for share in [0.2, 0.45, 0.999, 1.0, 1.2] {
                 let at = StressRadius::new(inner + share * (outer - inner));
-                let mut pairs = vec![(table.displacement_integral(&at, &ours), sum.displacement_integral(&at, &exact))];
+                let mut pairs = vec![(table.indenter().displacement_integral(&at, &ours), sum.indenter().displacement_integral(&at, &exact))];
                 if share < 1.0 {
-                    pairs.push((table.kernel(&at, &ours), sum.kernel(&at, &exact)));
-                    pairs.push((table.kernel_slope(&at, &ours), sum.kernel_slope(&at, &exact)));
+                    pairs.push((table.indenter().kernel(&at, &ours), sum.indenter().kernel(&at, &exact)));
+                    pairs.push((table.indenter().kernel_slope(&at, &ours), sum.indenter().kernel_slope(&at, &exact)));
                 }
                 // x^2 is known to round-off of x^2: in a ring of 1e-9 of it, near an edge, little of x^2 - r^2 is left.
                 let allowed = if outer - inner > 1e-5 { 1e-10 } else { 1e-3 };

@@ -16,11 +16,12 @@ mod search;
 
 use super::minimax::{Problem, smallest};
 use super::{PathEnd, alternating, cutoff_of, outermost_singular, positions};
+use crate::indenter::Indenter;
 use crate::contact::Contact;
 use crate::normal::load;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest_of, turning};
-use crate::profile::{Point, Profile, Ring, StressRadius};
+use crate::profile::{Point, Ring, StressRadius};
 use crate::slip_history::Line;
 
 /// A slip history of more pieces is refused, because each piece is evaluated for every E; nor is it a candidate as it
@@ -73,7 +74,7 @@ impl<'a> FromAnyState<'a> {
         end: PathEnd,
         keep_going: &'a dyn Fn() -> bool,
     ) -> Option<FromAnyState<'a>> {
-        let (profile, history) = (&*contact.profile, &contact.history);
+        let (profile, history) = (&*contact.indenter, &contact.history);
         let edge = *history.edge();
         if history.pieces().len() > MAX_DEPTH {
             return None;
@@ -86,7 +87,7 @@ impl<'a> FromAnyState<'a> {
             return None;
         }
         let cutoff = cutoff_of(outermost_singular(profile, outer.radius), outer.radius);
-        let problem = Problem { profile, edge: outer, cutoff, reversals: inner_strokes - 1, keep_going };
+        let problem = Problem { indenter: profile, edge: outer, cutoff, reversals: inner_strokes - 1, keep_going };
         let last = if rim.is_some() { -last } else { last };
         let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
         let height = rim.map_or(0.0, |level| (edge.level - DoubleDouble::from(level)).value());
@@ -118,7 +119,7 @@ impl<'a> FromAnyState<'a> {
 
     /// int w dx at the end, m^2, for a cut at a point.
     fn carried(&self, kinks: &[Point], cut: &Point) -> f64 {
-        let load = |ring: &Ring| load(self.problem.profile, ring);
+        let load = |ring: &Ring| load(self.problem.indenter, ring);
         let inside = self.inside(cut);
         let whole = self.history[..inside.whole].iter().map(|(ring, line)| (*ring, self.stress_weight(line)));
         let kept: f64 = whole.chain(inside.part).map(|(ring, slope)| slope * load(&ring)).sum();
@@ -143,7 +144,7 @@ impl<'a> FromAnyState<'a> {
         let value = match self.end {
             PathEnd::Free => 0.0,
             PathEnd::DisplacementZero => self.first_to(level) + self.problem.way(self.edge, kinks) - self.rim,
-            PathEnd::ForceZero => self.carried(kinks, &self.problem.profile.point(level)),
+            PathEnd::ForceZero => self.carried(kinks, &self.problem.indenter.point(level)),
         };
         self.first * value
     }
@@ -152,7 +153,7 @@ impl<'a> FromAnyState<'a> {
     /// sample.
     fn worst(&self, outside: &[f64], kinks: &[Point], cut: &Point) -> f64 {
         let ring = Ring::between(*cut, *kinks.last().unwrap_or(&self.problem.edge));
-        let profile = self.problem.profile;
+        let profile = self.problem.indenter;
         let inside = self.inside(cut);
         let mut worst = 0.0_f64;
         for (sample, outside) in self.samples.iter().zip(outside) {
@@ -189,7 +190,7 @@ impl<'a> FromAnyState<'a> {
 
     /// The cut that leaves least inside the last kink.
     fn free_cut(&self, outside: &[f64], kinks: &[Point]) -> Point {
-        let profile = self.problem.profile;
+        let profile = self.problem.indenter;
         let outermost = kinks.last().unwrap_or(&self.problem.edge);
         let cut = |radius: f64| profile.point(DoubleDouble::from(profile.level(radius).min(outermost.level.value())));
         let relief = |radius: f64| -self.worst(outside, kinks, &cut(radius));
@@ -216,11 +217,11 @@ impl<'a> FromAnyState<'a> {
         if over < 0.0 {
             // Sliding on as a whole changes nothing but where it ends.
             let (low, slides) = (DoubleDouble::ZERO, self.end == PathEnd::DisplacementZero);
-            return slides.then(|| (self.problem.profile.point(low), self.first_to(low) - self.first * over));
+            return slides.then(|| (self.problem.indenter.point(low), self.first_to(low) - self.first * over));
         }
         let [_, level] = turning([0.0, outermost.value()], |level| miss(level) <= 0.0);
         let level = DoubleDouble::from(level);
-        Some((self.problem.profile.point(level), self.first_to(level)))
+        Some((self.problem.indenter.point(level), self.first_to(level)))
     }
 
     /// The displacements, scaled by m, of the strokes that leave least, found in two ways; fewer where a way finds
@@ -235,7 +236,7 @@ impl<'a> FromAnyState<'a> {
     fn equal(&self) -> Option<LaterStrokes> {
         let problem = &self.problem;
         let middle = StressRadius::new(0.5 * (problem.cutoff + problem.edge.radius));
-        let zero = problem.profile.point(DoubleDouble::ZERO);
+        let zero = problem.indenter.point(DoubleDouble::ZERO);
         let guess = problem.shear_down_to(zero, &[], &middle) / (problem.reversals as f64 + 1.0).sqrt();
         Some(smallest(guess, TOLERANCE, Some(PACE), |limit| self.strokes(limit))?.1)
     }
@@ -258,7 +259,7 @@ struct Inside {
 
 impl Inside {
     /// The stress of the history at a sample, over G* m/pi.
-    fn stress(&self, profile: &Profile, sample: &SampleRadius) -> f64 {
+    fn stress(&self, profile: &Indenter, sample: &SampleRadius) -> f64 {
         let part = self.part.as_ref().map_or(0.0, |(ring, slope)| slope * profile.kernel(&sample.at, ring));
         sample.below[self.whole] + part
     }
@@ -285,7 +286,7 @@ fn samples(problem: &Problem<'_>, history: &[(Ring, Line)], last: f64) -> Vec<Sa
             below.push(sum);
             let slope = -last * line.slope.value();
             if slope.abs() > 0.0 && ring.outer.radius > at.radius {
-                sum += slope * problem.profile.kernel(&at, ring);
+                sum += slope * problem.indenter.kernel(&at, ring);
             }
         }
         below.push(sum);

@@ -40,7 +40,7 @@ impl FromAnyState<'_> {
     /// The kinks and the cut of the unknowns of the search; if the first stroke slides, the cut is none of them.
     fn points(&self, levels: &[f64], slides: bool) -> (Vec<Point>, Point) {
         let edge = self.problem.edge.level.value();
-        let point = |level: &f64| self.problem.profile.point(DoubleDouble::from(level * edge));
+        let point = |level: &f64| self.problem.indenter.point(DoubleDouble::from(level * edge));
         let mut points: Vec<Point> = levels.iter().chain(slides.then_some(&0.0)).map(point).collect();
         let cut = points.pop().unwrap_or(self.problem.edge);
         (points, cut)
@@ -50,7 +50,7 @@ impl FromAnyState<'_> {
     /// kink is 1/sqrt(X^2 - r^2), and that of the load carried is X.
     fn trial(&self, levels: Vec<f64>, slides: bool) -> Trial {
         let (problem, edge) = (&self.problem, self.problem.edge.level.value());
-        let profile = problem.profile;
+        let profile = problem.indenter;
         let (kinks, cut) = self.points(&levels, slides);
         let inside = self.inside(&cut);
         let slope_inside = inside.part.map_or(0.0, |(_, slope)| slope);

@@ -1,13 +1,15 @@
 //! Weighted sums of the kernels of adjoining rings: in closed form for a ball, by its cells for every other profile.
 
-use super::{Point, Profile, Ring, Span, Sphere, StressRadius};
+use super::{Indenter, Parabola, Point, StressRadius};
 use crate::cells::Cells;
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::displacement::displacements;
 use crate::cells::field::{MANY, SumAndSize, WeightedCells};
 use crate::cells::kernel::Kernel;
+use crate::cells::ring::Ring;
 use crate::cells::shape::Reach;
+use crate::cells::span::Span;
 use crate::numerics::multipole::Multipole;
 
 /// The cost of the derivative of the kernels of a cell, in terms of a sum over rings.
@@ -19,15 +21,15 @@ const SEARCH: usize = usize::MAX;
 /// From so many rings on cells are quicker than closed forms at many radii.
 const MANY_RINGS: usize = 128;
 
-impl Profile {
-    /// The sum of [`Profile::kernel`] times a weight over rings that adjoin each other from the centre outward, at each
+impl Indenter {
+    /// The sum of [`Indenter::kernel`] times a weight over rings that adjoin each other from the centre outward, at each
     /// of `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
         self.kernel_sums_at(rings, &StressRadius::of_all(radii))
     }
 
-    /// [`Profile::kernel_sums`] at radii whose squares have all their digits.
+    /// [`Indenter::kernel_sums`] at radii whose squares have all their digits.
     pub(crate) fn kernel_sums_at(&self, rings: &[(Ring, f64)], radii: &[StressRadius]) -> Vec<f64> {
         RingSum::new(self, rings, radii.len()).sums(radii)
     }
@@ -57,7 +59,7 @@ impl Profile {
 
 /// A weighted sum of kernels of rings from the centre outward.
 pub(crate) enum RingSum<'a> {
-    Ball(&'a Sphere, Vec<(Ring, f64)>),
+    Ball(&'a Parabola, Vec<(Ring, f64)>),
     Cells(WeightedCells<'a>),
     /// Without a stress field.
     Unknown,
@@ -65,11 +67,11 @@ pub(crate) enum RingSum<'a> {
 
 impl<'a> RingSum<'a> {
     /// For sums at so many radii.
-    fn new(profile: &'a Profile, rings: &[(Ring, f64)], radii: usize) -> RingSum<'a> {
+    fn new(indenter: &'a Indenter, rings: &[(Ring, f64)], radii: usize) -> RingSum<'a> {
         let edge = rings.last().map_or(0.0, |(ring, _)| ring.outer.radius);
-        match (profile.ball(), profile.cells(Reach::Radius(edge))) {
+        match (indenter.ball_face(), indenter.cells(Reach::Radius(edge))) {
             (Some(ball), _) if rings.len() < MANY_RINGS || radii < MANY => RingSum::Ball(ball, rings.to_vec()),
-            (_, Some(cells)) => RingSum::Cells(WeightedCells::new(cells, &profile.spans(rings), radii)),
+            (_, Some(cells)) => RingSum::Cells(WeightedCells::new(cells, &indenter.spans(rings), radii)),
             _ => RingSum::Unknown,
         }
     }
@@ -116,7 +118,7 @@ impl<'a> RingSum<'a> {
 
 /// The weighted sum of the kernels of rings that are added one by one, from an edge inward.
 pub(crate) struct InwardSum<'a> {
-    profile: &'a Profile,
+    indenter: &'a Indenter,
     rings: Vec<InwardRing>,
     cells: Option<&'a Cells>,
 }
@@ -130,15 +132,15 @@ struct InwardRing {
 
 impl<'a> InwardSum<'a> {
     /// No rings yet, of about so many inside an edge.
-    pub(crate) fn new(profile: &'a Profile, edge: &Point, rings: usize) -> InwardSum<'a> {
+    pub(crate) fn new(indenter: &'a Indenter, edge: &Point, rings: usize) -> InwardSum<'a> {
         // The kernel of a ball is quicker still.
-        let cells = if profile.ball().is_some() { None } else { profile.cells(Reach::Radius(edge.radius)) };
-        InwardSum { profile, rings: Vec::with_capacity(rings), cells }
+        let cells = if indenter.ball().is_some() { None } else { indenter.cells(Reach::Radius(edge.radius)) };
+        InwardSum { indenter, rings: Vec::with_capacity(rings), cells }
     }
 
     /// Adds a ring that ends where the last begins.
     pub(crate) fn add(&mut self, ring: Ring, weight: f64) {
-        let span = self.profile.span(&ring);
+        let span = self.indenter.span(&ring);
         let far = self.cells.filter(|_| span.edge <= 0.0).map(|cells| cells.sources_of(&span));
         self.rings.push(InwardRing { ring, span, weight, far });
     }
@@ -150,7 +152,7 @@ impl<'a> InwardSum<'a> {
                 * match (far.as_ref().filter(|far| Kernel::Root.is_far(far, at.square)), self.cells) {
                     (Some(far), _) => Kernel::Root.far(far, [at.square])[0],
                     (None, Some(cells)) if span.edge <= 0.0 => cells.sum(Kernel::Root, at, span),
-                    _ => self.profile.kernel(at, ring),
+                    _ => self.indenter.kernel(at, ring),
                 }
         };
         self.rings.iter().map(kernel).sum()
@@ -159,15 +161,16 @@ impl<'a> InwardSum<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Profile, Ring, StressRadius, Tabulated};
+    use super::super::Indenter;
     use super::InwardSum;
     use crate::numerics::double_double::DoubleDouble;
+    use crate::profile::{Profile, Ring, StressRadius, Tabulated};
 
     #[test]
     fn rings_of_a_table_added_one_by_one_are_the_sum_of_their_kernels_however_thin_they_are() {
         let radii: Vec<f64> = (0..400).map(|index| 1e-3 * f64::from(index) / 399.0).collect();
         let heights: Vec<f64> = radii.iter().map(|r| 0.5 * r * r + 20.0 * r.powi(3)).collect();
-        let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+        let table = Indenter::new(Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap()));
         let edge = table.level(8e-4);
         for width in [0.3, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10] {
             let ends = [edge, edge * (1.0 - width), edge * (1.0 - 2.0 * width)];

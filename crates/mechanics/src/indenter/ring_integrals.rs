@@ -1,14 +1,16 @@
 //! The integrals over one ring of a profile: what moves, stresses and displacements are sums of. Those at a vertical
 //! edge are added here to those of the cells.
 
-use super::{Moments, Profile, Ring, Span, StressRadius};
+use super::{Indenter, StressRadius};
 use crate::cells::Cells;
 #[cfg(test)]
 use crate::cells::call_count;
 use crate::cells::kernel::Kernel;
+use crate::cells::ring::{Moments, Ring};
 use crate::cells::shape::Reach;
+use crate::cells::span::Span;
 
-impl Profile {
+impl Indenter {
     /// The integrals over a ring, each to round-off of itself however thin the ring is.
     #[must_use]
     #[inline]
@@ -16,16 +18,13 @@ impl Profile {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.moments);
         // As for a point; and the ring need not be written to memory.
-        if let Profile::Sphere(ball) = self { ball.moments(ring) } else { self.moments_of_any(ring) }
+        if let Some(ball) = self.ball() { ball.moments(ring) } else { self.moments_of_any(ring) }
     }
 
     #[inline(never)]
     fn moments_of_any(&self, ring: &Ring) -> Moments {
-        if let Some(curve) = self.curve() {
+        if let Some(curve) = self.profile.curve() {
             return curve.moments_of(ring);
-        }
-        if let Some(ball) = self.ball() {
-            return ball.moments(ring);
         }
         let Some(cells) = self.cells(Reach::Radius(ring.outer.radius)) else { return Moments::default() };
         let span = self.span_by(cells, ring);
@@ -44,7 +43,7 @@ impl Profile {
 
     fn span_by(&self, cells: &Cells, ring: &Ring) -> Span {
         let (mut depth, mut edge, top) = (ring.depth, 0.0, cells.top.level);
-        if ring.outer.radius >= cells.top.radius && self.rim_radius().is_some() {
+        if self.rim.is_some_and(|rim| ring.outer.square >= rim.square) {
             if ring.inner.level >= top {
                 (depth, edge) = (0.0, depth);
             } else if ring.outer.level > top {
@@ -66,19 +65,19 @@ impl Profile {
     pub fn kernel(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.kernel);
-        match self.ball() {
+        match self.ball_face() {
             Some(ball) => ball.kernel(at, ring),
             None => self.sum_over(Kernel::Root, at, ring),
         }
     }
 
-    /// The derivative of [`Profile::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner
+    /// The derivative of [`Indenter::kernel`] with respect to r^2, 1/m^2, taken from the right where r is the inner
     /// radius.
     #[must_use]
     pub fn kernel_slope(&self, at: &StressRadius, ring: &Ring) -> f64 {
         #[cfg(test)]
         call_count::add(|calls| &mut calls.kernel_slope);
-        match self.ball() {
+        match self.ball_face() {
             Some(ball) => ball.kernel_slope(at, ring),
             None => self.sum_over(Kernel::RootSlope, at, ring),
         }
