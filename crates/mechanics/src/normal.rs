@@ -219,6 +219,7 @@ pub(super) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &
     let mut squares: Vec<DoubleDouble> = (0..PRESSURE_SCAN)
         .map(|index| DoubleDouble::square_of(radius(index)))
         .chain((0..LEVEL_SCAN).map(|index| face.point(level(index)).square))
+        .chain(highest_kink(face, elasticity, &edge))
         .collect();
     squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
     squares.push(edge.square);
@@ -227,6 +228,16 @@ pub(super) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &
         if square < edge.square { at(&place) } else { 0.0 }
     };
     Some(largest_of(&squares, 1, 1e-7, inside).1)
+}
+
+/// The square, m^2, of the kink in the contact at which the pressure is highest: beside it its derivative is infinite,
+/// so that no even radii find a maximum there.
+fn highest_kink(face: &Indenter, elasticity: &Elasticity, edge: &Point) -> Option<DoubleDouble> {
+    let inside = face.kinks().iter().map(|kink| kink.at).take_while(|at| at.square < edge.square);
+    let places: Vec<StressRadius> = inside.collect();
+    let pressures = face.kernel_sums_at(&[(whole(face, edge), elasticity.e_star())], &places);
+    let highest = places.iter().zip(pressures).max_by(|one, other| one.1.total_cmp(&other.1));
+    highest.map(|(at, _)| at.square)
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.

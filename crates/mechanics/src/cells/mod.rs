@@ -13,7 +13,6 @@ pub(crate) mod falls;
 pub(crate) mod field;
 pub(crate) mod grid;
 pub(crate) mod kernel;
-mod lookup;
 pub(crate) mod moment_tree;
 mod near_part;
 pub(crate) mod parabola;
@@ -33,7 +32,6 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::multipole::Multipole;
 use falls::Steepness;
 use kernel::Kernel;
-use lookup::Lookup;
 use moment_tree::MomentTree;
 use ring::{Moments, Point, Ring, StressRadius};
 use span::Span;
@@ -68,8 +66,9 @@ pub(crate) struct Top {
 #[derive(Debug)]
 pub(crate) struct Cells {
     pub(crate) cells: Vec<Cell>,
-    by_radius: Lookup,
-    by_level: Lookup,
+    /// Where they begin: the radius, m, and the level, m.
+    radii: Box<[f64]>,
+    levels: Box<[f64]>,
     /// Moments and depth of all runs of cells.
     tree: MomentTree,
     /// The kernel's sources, made when a stress is first asked for.
@@ -108,8 +107,8 @@ impl Cells {
         top.square = end.unwrap_or(top.square);
         top.radius = top.square.value().sqrt();
         Cells {
-            by_radius: Lookup::new(cells.iter().map(|cell| cell.radius), top.radius),
-            by_level: Lookup::new(cells.iter().map(|cell| cell.level.value()), top.level.value()),
+            radii: cells.iter().map(|cell| cell.radius).collect(),
+            levels: cells.iter().map(|cell| cell.level.value()).collect(),
             tree: MomentTree::new(totals.into_iter()),
             sources: OnceLock::new(),
             steepness: OnceLock::new(),
@@ -183,7 +182,7 @@ impl Cells {
         if level >= self.top.level {
             return self.top.square;
         }
-        let Some(cell) = self.cells.get(self.by_level.holding(level.value())) else { return self.top.square };
+        let Some(cell) = self.cells.get(last(&self.levels, |start| start <= level.value())) else { return self.top.square };
         let rest = (level - cell.level).value();
         if rest <= 0.0 {
             return cell.square;
@@ -256,7 +255,7 @@ impl Cells {
 
     /// The cell that holds a radius, m.
     pub(crate) fn find(&self, radius: f64) -> usize {
-        self.by_radius.holding(radius)
+        last(&self.radii, |start| start <= radius)
     }
 
     /// The parts of a span outside the flat core.
@@ -267,7 +266,7 @@ impl Cells {
         };
         // By the squares: a radius just beyond a border may be rounded onto it, or to its other side.
         let begins = |index: usize| self.cells.get(index).map(|cell| cell.square);
-        let mut outer = self.by_radius.ending_at(span.outer_radius);
+        let mut outer = last(&self.radii, |start| start < span.outer_radius);
         outer += usize::from(begins(outer + 1).is_some_and(|square| square < span.outer));
         outer -= usize::from(outer > 0 && begins(outer).is_some_and(|square| square >= span.outer));
         let mut inner = self.find(span.inner_radius);
@@ -343,4 +342,9 @@ impl Cells {
 fn cell_span(cell: &Cell, outer: DoubleDouble, outer_radius: f64) -> Span {
     let gap = (outer - cell.square).value();
     Span { inner: cell.square, outer, inner_radius: cell.radius, outer_radius, gap, edge: 0.0 }
+}
+
+/// The last of the values, which do not fall, that is below something; the first if none is.
+fn last(values: &[f64], below: impl Fn(f64) -> bool) -> usize {
+    values.partition_point(|&value| below(value)).saturating_sub(1)
 }

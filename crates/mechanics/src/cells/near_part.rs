@@ -15,9 +15,6 @@ impl Cell {
     /// int gamma dzeta/sqrt(zeta^2 - kappa) over what a span, which lies inside the cell, has beyond r, kappa = r^2 -
     /// b^2; or its derivative with respect to r^2, 1/m^2, from the right.
     pub(crate) fn kernel<const SLOPE: bool>(&self, at: &StressRadius, span: &Span) -> f64 {
-        if span.excess(at.square).1 <= 0.0 {
-            return 0.0;
-        }
         let [kernel] = NearPart::new(self, span).kernels::<1, SLOPE>([at.square]);
         kernel
     }
@@ -86,6 +83,12 @@ impl NearPart<'_> {
                 if kappa[lane] < LEAST_KAPPA * high * high {
                     values[lane] = far[lane];
                 }
+            }
+        }
+        for lane in 0..N {
+            // Beyond the part, where the antiderivative has no value.
+            if above[lane] <= 0.0 {
+                values[lane] = 0.0;
             }
         }
         values

@@ -204,7 +204,11 @@ impl Indenter {
     /// g(x), m, for a radius x >= 0, m.
     #[must_use]
     pub fn level(&self, radius: f64) -> f64 {
-        self.profile.curve().map_or_else(|| self.profile.level(radius), |curve| curve.level_of(radius))
+        match (self.profile.curve(), self.ball()) {
+            (Some(curve), _) => curve.level_of(radius),
+            (None, Some(ball)) => radius * radius / ball.curvature_radius,
+            _ => self.profile.level(radius),
+        }
     }
 
     /// g'(x) (pure number), infinite where f' jumps.
