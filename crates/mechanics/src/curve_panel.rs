@@ -8,11 +8,11 @@
 //! - F_x straight in d: dF_x = 2 G* m x dW (no slip), so W1 - W0 = c (D/x1 + K) and int w dx = c x0 J, with
 //!   c = (dF_x/dd)/(2 G* m), J = int h/x^2 dx and K = int (D - h)/x^2 dx; J = D/x0 - D/x1 - K.
 
-use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
-use super::profile::Ring;
 use crate::contact::Contact;
+use crate::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{self, EIGHT_POINTS, TWENTY_POINTS};
+use crate::profile::Ring;
 
 /// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.
 const RATE_ROUND_OFF: f64 = 16.0 * f64::EPSILON;

@@ -8,12 +8,12 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::curve_panel::PathPanel;
-use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::contact::Contact;
-use crate::error::Error;
+use crate::curve_panel::PathPanel;
+use crate::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, turning};
+use crate::range::error::Error;
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
 pub const DEFAULT_TOLERANCE: f64 = 1e-10;

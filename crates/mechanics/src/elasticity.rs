@@ -3,8 +3,8 @@
 //! 1/E* = sum (1 - nu_i^2)/E_i (Hertz 1881) and 1/G* = sum (2 - nu_i)/(4 G_i) (Mindlin 1949), with
 //! G_i = E_i/(2 (1 + nu_i)). A rigid body adds nothing to either sum.
 
-use crate::error::Error;
 use crate::range;
+use crate::range::error::Error;
 
 /// An isotropic elastic body.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,6 +42,15 @@ impl Body {
     fn shear_modulus(self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 + self.poisson_ratio))
     }
+}
+
+/// One of the two bodies in contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The one that carries the profile and moves along x. Its surface is dragged back by -tau.
+    First,
+    /// The plane one, dragged along by tau.
+    Second,
 }
 
 /// The reduced moduli of a pair of bodies, and how far normal and tangential contact are truly independent.

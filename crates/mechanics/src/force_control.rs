@@ -6,10 +6,10 @@
 //! measured from the nearer end, so that neither a tiny change of force nor the last 1e-15 before the limit mu F_N
 //! loses its digits.
 
-use super::normal::{depth_for, load};
-use super::profile::{Point, Ring};
 use crate::contact::Contact;
+use crate::contact::normal::{depth_for, load};
 use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Point, Ring};
 
 /// The stack brought to a new edge, before the slip ring grows towards `sign`.
 struct SlipFront {

@@ -43,36 +43,27 @@
 //!
 //! # Modules
 //!
+//! From the top down: each imports its own row and those below it.
+//!
 //! | module | question |
 //! |---|---|
-//! | [`elasticity`] | which two moduli do the bodies have together? |
-//! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
-//! | [`Indenter`] | what does a contact ask of a profile, resolved once? |
-//! | `limit` | how stiff is a spring, and how far may it be carried? |
-//! | `cells` | how are g and its integrals computed for any shape, in cells of radii with one series each? |
-//! | `normal` | how do indentation, contact radius, normal force and pressure follow from each other? |
-//! | `slip_history` | what is left of the path, what does a move change, and how much work does it dissipate? |
-//! | `contact`, `moves`, `state` | what is a contact made of, how does it move, what state is it in? |
-//! | `force_control` | which displacement gives a tangential force? |
-//! | `curved_move` | how is a move followed that is straight in a force? |
-//! | `curve_panel` | which two chords have the integral of a curve? |
-//! | [`cycle`] | what does it do in a steady cycle? |
-//! | [`closed_cycles`] | which cycles has a path closed? |
-//! | `shear_stress`, `extrema` | what is the shear stress, and where are its extrema? |
-//! | [`subsurface`] | what is the stress in the bodies below the contact? |
-//! | [`wear`] | which shape does fretting wear leave in the end? |
+//! | [`protocol`], [`wear`] | which paths leave little shear stress? which shape does fretting wear leave in the end? |
 //! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
-//! | `line_surface` | what does the surface of a line contact carry, and how far has it slipped? |
-//! | `surface_displacement` | how far does the surface move, and how far has it slipped? |
-//! | `accuracy` | how far may a result be off? |
-//! | `packed` | how is a contact stored as bytes? |
-//! | [`protocol`] | which paths leave little shear stress? |
-//! | [`springs`] | what is the result of the discrete foundation of the paper? |
-//! | [`rings`] | what does a contact do that is moved in the plane? |
-//! | [`range`](mod@range), `error` | which numbers are accepted, and what is refused? |
+//! | [`rings`], [`springs`] | what does motion in the plane do? what the discrete foundation of the paper? |
+//! | [`cycle`], [`closed_cycles`] | what does a contact do in a steady cycle, and which cycles has a path closed? |
+//! | [`subsurface`] | what is the stress in the bodies below the contact? |
+//! | `surface` | what does the surface carry, how far does it move and slip, where are the extrema? |
+//! | `moves`, `force_control` | how does a contact move, and which displacement gives a force? |
+//! | `curved_move`, `curved_path`, `curve_panel` | how is a move followed that is straight in a force? |
+//! | `contact` | what is a contact made of, what are its state, pressure, error and bytes? |
+//! | `slip_history` | what is left of the path under a limit law, and what work does a move dissipate? |
+//! | [`Indenter`] | what does a contact ask of a profile, resolved once? |
+//! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
+//! | [`elasticity`] | which two moduli do the bodies have together? |
+//! | `cells` | how are g and its integrals computed for any shape, in cells of radii with one series each? |
+//! | [`range`](mod@range) | which numbers are accepted, and what is refused? |
 //! | `numerics` | how are differences kept exact, roots found, functions integrated, and what is far away summed? |
 
-mod accuracy;
 mod cells;
 pub mod closed_cycles;
 mod contact;
@@ -81,31 +72,21 @@ mod curved_move;
 mod curved_path;
 pub mod cycle;
 pub mod elasticity;
-mod error;
-mod extrema;
 pub mod fatigue;
 mod force_control;
 mod indenter;
-mod limit;
-mod line_surface;
 mod moves;
-mod normal;
 mod numerics;
-mod packed;
 pub mod profile;
 pub mod protocol;
-mod quantity;
 pub mod range;
 pub mod rings;
-mod shear_stress;
 mod slip_history;
 pub mod springs;
-mod state;
 pub mod subsurface;
-mod surface_displacement;
+mod surface;
 #[cfg(test)]
 mod tests;
-mod unit_prefix;
 pub mod wear;
 
 /// Runs the example of the README as a test.
@@ -113,18 +94,18 @@ pub mod wear;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-pub use accuracy::ErrorEstimate;
 pub use contact::Contact;
+pub use contact::accuracy::ErrorEstimate;
+pub use contact::normal::{ContactSummary, Preload};
+pub use contact::packed::ENGINE;
+pub use contact::state::{Move, Normal, Regime, Setup, State, Tangential};
 pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use elasticity::{Body, Elasticity};
-pub use error::{CurveFault, Error, TableFault, UnsupportedMove};
 pub use indenter::Indenter;
-pub use normal::{ContactSummary, Preload};
 pub use numerics::double_double::DoubleDouble;
-pub use packed::ENGINE;
 pub use profile::{Profile, Sphere};
-pub use shear_stress::{Peak, Residual};
+pub use range::error::{CurveFault, Error, TableFault, UnsupportedMove};
+pub use range::unit_prefix::{in_unit, unit_prefix};
 pub use springs::Springs;
-pub use state::{Move, Normal, Regime, Setup, State, Tangential};
 pub use subsurface::Stress;
-pub use unit_prefix::{in_unit, unit_prefix};
+pub use surface::shear_stress::{Peak, Residual};

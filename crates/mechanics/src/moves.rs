@@ -1,14 +1,14 @@
 //! The moves of a contact: straight ones in one step, curved ones through `curved_move`; and the first part of a move,
 //! so that its path can be drawn point by point.
 
-use super::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::contact::Contact;
+use crate::contact::state::{Move, Normal, Tangential};
 use crate::curved_move::DEFAULT_TOLERANCE;
-use crate::error::Error;
-use crate::limit::Coulomb;
+use crate::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::numerics::double_double::DoubleDouble;
 use crate::range;
-use crate::state::{Move, Normal, Tangential};
+use crate::range::error::Error;
+use crate::slip_history::limit::Coulomb;
 
 impl Contact {
     /// Moves along a straight line, as [`Contact::apply_within`] with [`DEFAULT_TOLERANCE`].
@@ -178,7 +178,8 @@ impl Contact {
     pub(super) fn advance(&mut self, point: &PathPoint) {
         self.displacement = point.displacement;
         self.normal_force = point.normal_force;
-        let scaled_work = self.history.advance(&Coulomb(&self.indenter), point.indentation, self.scaled(point.displacement));
+        let scaled_work =
+            self.history.advance(&Coulomb(&self.indenter), point.indentation, self.scaled(point.displacement));
         let scale = self.scale();
         let work = 2.0 * self.elasticity.g_star() * scale * scale * scaled_work;
         self.dissipated = self.dissipated + DoubleDouble::from(work);

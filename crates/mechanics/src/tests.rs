@@ -3,10 +3,10 @@
 
 use std::cell::Cell;
 
-use super::cells::call_count::{Calls, during, so_far};
-use super::profile::{PowerLaw, RoundedPunch};
-use super::protocol::{equal_peaks, falling_amplitude};
-use super::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+use crate::cells::call_count::{Calls, during, so_far};
+use crate::profile::{PowerLaw, RoundedPunch};
+use crate::protocol::{equal_peaks, falling_amplitude};
+use crate::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
 
 /// Reversals of the path.
 const REVERSALS: usize = 9;

@@ -57,7 +57,8 @@ impl Computation for Wear {
 
     /// The profile, the table of the limit with its series, and the curves.
     fn bytes((request, setup): &Task<Self>) -> usize {
-        let (places, profile) = (Indenter::new(Arc::clone(&setup.profile)).singular_radii().len() + 3, &request.contact.profile);
+        let (places, profile) =
+            (Indenter::new(Arc::clone(&setup.profile)).singular_radii().len() + 3, &request.contact.profile);
         let points = places * TABLE_POINTS + profile.points().min(TABLE_KNOTS);
         of_shape(profile) + points * SERIES + request.points() * 5 * NUMBER
     }

@@ -16,7 +16,8 @@ const MAX_COST: Nanoseconds = 300_000_000;
 /// If a law does not hold for the answer to a body.
 pub fn examine(body: &[u8]) -> Outcome {
     answered::<Fretting>(body, MAX_COST, |(_, setup, task), reply| {
-        let spiked = setup.profile.indenter().rim_radius().is_some() || !setup.profile.indenter().singular_radii().is_empty();
+        let spiked =
+            setup.profile.indenter().rim_radius().is_some() || !setup.profile.indenter().singular_radii().is_empty();
         laws(&task, reply, spiked);
     })
 }

@@ -182,7 +182,9 @@ impl Cells {
         if level >= self.top.level {
             return self.top.square;
         }
-        let Some(cell) = self.cells.get(last(&self.levels, |start| start <= level.value())) else { return self.top.square };
+        let Some(cell) = self.cells.get(last(&self.levels, |start| start <= level.value())) else {
+            return self.top.square;
+        };
         let rest = (level - cell.level).value();
         if rest <= 0.0 {
             return cell.square;

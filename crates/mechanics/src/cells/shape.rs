@@ -76,7 +76,9 @@ pub(crate) fn united(parts: &[Kinks]) -> Kinks {
     let mut united: Vec<Kink> = Vec::with_capacity(kinks.len());
     for kink in kinks {
         match united.last_mut() {
-            Some(last) if last.at.radius.to_bits() == kink.at.radius.to_bits() => last.powers = last.powers.and(kink.powers),
+            Some(last) if last.at.radius.to_bits() == kink.at.radius.to_bits() => {
+                last.powers = last.powers.and(kink.powers)
+            }
             // What lies beneath goes on as an odd function of t.
             Some(_) => united.push(Kink { powers: Powers::All(1).and(kink.powers), ..kink }),
             None => united.push(kink),

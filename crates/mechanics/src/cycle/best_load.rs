@@ -8,8 +8,8 @@ use std::cell::Cell;
 
 use super::{Drive, SteadyCycle};
 use crate::contact::Contact;
-use crate::error::Error;
 use crate::numerics::roots::largest;
+use crate::range::error::Error;
 
 /// Loads that are compared first, evenly spaced in their logarithm, and how far below the onset of gross slip and above
 /// it they reach.

@@ -13,7 +13,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::SteadyCycle;
-use crate::normal::load;
+use crate::contact::normal::load;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWENTY_POINTS};
 use crate::profile::Ring;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use super::Harmonic;
 use crate::contact::Contact;
-use crate::state::{Regime, State};
+use crate::contact::state::{Regime, State};
 
 /// A steady cycle that was stepped.
 #[derive(Clone, Debug, PartialEq)]

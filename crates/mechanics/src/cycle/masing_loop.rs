@@ -6,7 +6,7 @@
 //! loading curve.
 
 use crate::contact::Contact;
-use crate::normal::load;
+use crate::contact::normal::load;
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Ring;
 

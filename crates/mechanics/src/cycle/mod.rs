@@ -29,15 +29,15 @@ pub use response::{Resonator, Response};
 
 use std::f64::consts::PI;
 
-use super::curved_path::PathPoint;
-use super::normal::{depth_for, load, whole};
-use super::profile::{Moments, Ring};
 use crate::contact::Contact;
-use crate::error::Error;
+use crate::contact::normal::{depth_for, load, whole};
+use crate::contact::state::Regime;
+use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWENTY_POINTS;
 use crate::numerics::roots::within;
-use crate::state::Regime;
+use crate::profile::{Moments, Ring};
+use crate::range::error::Error;
 
 /// The quantity prescribed as a cosine over a cycle: at the machine, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,13 +12,13 @@ use std::f64::consts::TAU;
 use super::Drive;
 use super::lap::OscillatingCycle;
 use crate::contact::Contact;
+use crate::contact::state::Normal;
 use crate::curved_path::PathPoint;
-use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{between, turning};
+use crate::range::error::Error;
+use crate::range::unit_prefix::short;
 use crate::range::{self, Quantity};
-use crate::state::Normal;
-use crate::unit_prefix::short;
 
 /// Steps of a cycle at first, and at most.
 const FEWEST: usize = 128;

@@ -5,8 +5,8 @@
 //! instant, and rates the cycle of this mean stress.
 
 use super::{Rated, Study};
-use crate::error::Error;
 use crate::numerics::gauss::{EIGHT_POINTS, by_halves};
+use crate::range::error::Error;
 use crate::subsurface::{Stress, Subsurface};
 
 /// Halvings of the interval over which a stress is averaged.

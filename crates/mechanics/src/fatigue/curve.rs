@@ -9,9 +9,9 @@
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use crate::error::Error;
 use crate::numerics::chebyshev::{NESTED_STEPS, nested_midpoints, nested_point, nested_products, nested_weights};
 use crate::numerics::roots::largest;
+use crate::range::error::Error;
 use crate::subsurface::Stress;
 
 /// Components xx, yy, zz, xy, yz, xz of the stress, Pa, then pressure, Pa, shear stress, Pa, and slip, m, of the

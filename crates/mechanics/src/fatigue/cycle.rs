@@ -1,12 +1,12 @@
 //! The steady cycle of a contact under a closed list of moves, held at instants.
 
 use crate::contact::Contact;
+use crate::contact::state::{Move, Normal, Tangential};
 use crate::curved_move::DEFAULT_TOLERANCE;
 use crate::curved_path::PathPoint;
-use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::range::Quantity;
-use crate::state::{Move, Normal, Tangential};
+use crate::range::error::Error;
 
 /// A cycle is closed if it ends as near as this to where it began, relative to its largest displacement or indentation.
 const CLOSED: f64 = 1e-9;

@@ -12,9 +12,9 @@
 
 use std::f64::consts::LN_2;
 
-use crate::error::Error;
 use crate::numerics::roots::within;
 use crate::range;
+use crate::range::error::Error;
 
 /// Cycles of a stated life: from one reversal to more than tests of materials reach.
 pub const LIVES: [f64; 2] = [0.5, 1e12];

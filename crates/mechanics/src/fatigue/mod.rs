@@ -29,8 +29,8 @@ mod study;
 
 use std::f64::consts::SQRT_2;
 
-use crate::error::Error;
 use crate::range;
+use crate::range::error::Error;
 use crate::subsurface::Stress;
 use ball::dot;
 pub use ball::{Ball, enclosing_ball};

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use super::Rated;
 use super::planes::Vector;
 use super::study::Study;
-use crate::error::Error;
+use crate::range::error::Error;
 
 /// Depths of the net, in contact radii; the first ones, and not the others, on the circles where something ends.
 const DEPTHS: [f64; 12] = [0.0, 0.01, 0.03, 0.08, 0.15, 0.25, 0.35, 0.48, 0.65, 0.9, 1.2, 1.7];

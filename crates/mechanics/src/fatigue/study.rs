@@ -10,8 +10,8 @@ use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
 use super::planes::Vector;
 use super::{Cycle, Instant, Measure, Rated};
 use crate::contact::Contact;
-use crate::error::Error;
 use crate::profile::Profile;
+use crate::range::error::Error;
 use crate::subsurface::{Side, Stress, Subsurface};
 
 /// The value of a measure of the surface below the surface.

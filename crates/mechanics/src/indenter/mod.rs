@@ -2,14 +2,15 @@
 //!
 //! | part | what it is | serves |
 //! |---|---|---|
-//! | curve | X(y), the radius of a level, over the indentation: its inverse, its integrals over rings | moves, forces, energies |
-//! | face | a body of revolution whose g is made of cells in x^2: its kernels, sources, displacements | stresses, surfaces |
+//! | curve | X(y), the radius of a level: its inverse, its integrals over rings | moves, forces, energies |
+//! | face | a body of revolution, by cells in x^2: kernels, sources, displacements | stresses, surfaces |
 //! | flat, rim | the point of the level zero; the place of a vertical edge | both |
 //! | kinks, end | where g is not analytic; where contacts end | both |
 //!
-//! A round shape is both; a line has a curve of its own and a round face; asperities, ellipsoids and load curves have no
-//! face. Places carry their squares with twice the digits, and are compared by them: an annulus beyond a flat may be
-//! thinner than a unit in the last place of its radius. A limit law is written on an indenter: see `limit.rs`.
+//! A round shape is both; a line has a curve of its own and a round face; asperities, ellipsoids and load curves have
+//! no face. Places carry their squares with twice the digits, and are compared by them: an annulus beyond a flat may
+//! be thinner than a unit in the last place of its radius. A limit law is written on an indenter:
+//! `slip_history/limit.rs`.
 
 mod ring_integrals;
 mod ring_sum;
@@ -23,9 +24,9 @@ use crate::cells::falls::Falls;
 use crate::cells::parabola::Parabola;
 use crate::cells::ring::{Point, StressRadius};
 use crate::cells::shape::{End, EndKind, Kinks, Powers, Reach, Shape};
-use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::{LineContact, Profile, WIDEST};
+use crate::range::error::Error;
 
 /// A profile resolved once.
 ///
@@ -335,7 +336,6 @@ impl Indenter {
     #[must_use]
     pub fn smooth_centre(&self) -> bool {
         let smooth = |powers| powers == Powers::Odd;
-        self.face().is_some()
-            && self.kinks.first().is_none_or(|kink| kink.at.radius > 0.0 || smooth(kink.powers))
+        self.face().is_some() && self.kinks.first().is_none_or(|kink| kink.at.radius > 0.0 || smooth(kink.powers))
     }
 }

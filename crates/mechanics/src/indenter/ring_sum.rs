@@ -22,8 +22,8 @@ const SEARCH: usize = usize::MAX;
 const MANY_RINGS: usize = 128;
 
 impl Indenter {
-    /// The sum of [`Indenter::kernel`] times a weight over rings that adjoin each other from the centre outward, at each
-    /// of `radii` (m).
+    /// The sum of [`Indenter::kernel`] times a weight over rings that adjoin each other from the centre outward, at
+    /// each of `radii` (m).
     #[must_use]
     pub fn kernel_sums(&self, rings: &[(Ring, f64)], radii: &[f64]) -> Vec<f64> {
         self.kernel_sums_at(rings, &StressRadius::of_all(radii))

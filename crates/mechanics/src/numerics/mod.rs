@@ -8,6 +8,7 @@
 //! | `chebyshev` | which series has these values, and its primitive? |
 //! | `gauss` | what is an integral, given where the integrand is singular? |
 //! | `angle` | what are angles of several numbers side by side, and their tangents less them, to round-off? |
+//! | `packing` | how are values written as bytes, and read again? |
 //! | `root_kernel` | what is the integral of a power series over sqrt(t^2 - kappa)? |
 //! | `cluster_tree`, `multipole` | what do many sources add up to, far away? |
 
@@ -18,5 +19,6 @@ pub(crate) mod cluster_tree;
 pub(crate) mod double_double;
 pub(crate) mod gauss;
 pub(crate) mod multipole;
+pub(crate) mod packing;
 pub(crate) mod root_kernel;
 pub(crate) mod roots;

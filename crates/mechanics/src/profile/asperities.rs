@@ -16,7 +16,6 @@ use super::curve_family::CurveFamily;
 use super::{Moments, Ring};
 use crate::cells::moment_tree::MomentTree;
 use crate::cells::parabola::Parabola;
-use crate::error::{CurveFault, Error};
 use crate::numerics::chebyshev::{self, TWENTY};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::double_double::DoubleDouble;
@@ -24,6 +23,7 @@ use crate::numerics::gauss::TWELVE_POINTS;
 use crate::numerics::multipole::Multipole;
 use crate::numerics::roots::within;
 use crate::range;
+use crate::range::error::{CurveFault, Error};
 
 /// Asperities in the smallest cluster.
 const LEAF: usize = 16;

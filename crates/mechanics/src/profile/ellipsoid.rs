@@ -11,9 +11,9 @@
 //! Ciavarella (1998) and Jäger (1998), which is exact for a circle alone.
 
 use crate::cells::parabola::Parabola;
-use crate::error::Error;
 use crate::numerics::roots::turning;
 use crate::range;
+use crate::range::error::Error;
 
 /// The axis of the tangential motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

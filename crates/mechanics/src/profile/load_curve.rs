@@ -18,10 +18,10 @@ use super::open_gaps::open_slopes;
 use super::{InterpolationError, Moments, Ring};
 use crate::cells::moment_tree::MomentTree;
 use crate::elasticity::Elasticity;
-use crate::error::{CurveFault, Error};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWENTY_POINTS;
 use crate::range;
+use crate::range::error::{CurveFault, Error};
 
 /// A fall of the slope up to this, of itself, is rounding.
 const ERROR_OF_SLOPE: f64 = 1e-12;

@@ -34,8 +34,8 @@ pub use tabulated::{InterpolationError, Tabulated};
 use crate::cells::Cells;
 use crate::cells::parabola::Parabola;
 use crate::cells::shape::{Reach, Shape};
-use crate::error::Error;
 use crate::range;
+use crate::range::error::Error;
 use asperities::Count;
 pub(crate) use curve_family::CurveFamily;
 

@@ -143,10 +143,15 @@ fn a_punch_that_ends_inside_all_flats_of_a_sum_is_a_punch() {
     let punch = || Profile::FlatPunch(FlatPunch::new(1e-3).unwrap());
     for radius in [1e-3, 2e-3] {
         let sum = sum(vec![flat(radius), punch()]);
-        let ring = |profile: &Profile| Ring::between(profile.indenter().point(0.0.into()), profile.indenter().point(1e-6.into()));
+        let ring = |profile: &Profile| {
+            Ring::between(profile.indenter().point(0.0.into()), profile.indenter().point(1e-6.into()))
+        };
         assert_eq!(sum.indenter().moments(&ring(&sum)), punch().indenter().moments(&ring(&punch())));
         let at = StressRadius::new(5e-4);
-        assert!((sum.indenter().kernel(&at, &ring(&sum)) / punch().indenter().kernel(&at, &ring(&punch())) - 1.0).abs() < 1e-15);
+        assert!(
+            (sum.indenter().kernel(&at, &ring(&sum)) / punch().indenter().kernel(&at, &ring(&punch())) - 1.0).abs()
+                < 1e-15
+        );
     }
 }
 

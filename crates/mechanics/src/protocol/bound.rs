@@ -22,8 +22,8 @@ use std::f64::consts::PI;
 
 use super::{EvaluationRange, branch_and_bound};
 use crate::contact::Contact;
-use crate::numerics::roots::turning;
 use crate::indenter::Indenter;
+use crate::numerics::roots::turning;
 
 /// Steps of the search from the edge to the centre for the end of a piece.
 const STEPS: usize = 4_096;

@@ -14,8 +14,8 @@
 
 use std::cell::OnceCell;
 
-use crate::indenter::Indenter;
 use crate::contact::Contact;
+use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::turning;
 use crate::profile::{Point, Ring, StressRadius};

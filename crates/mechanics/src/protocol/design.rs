@@ -4,11 +4,11 @@ use super::from_any_state::{FromAnyState, MAX_DEPTH};
 use super::line::design_line;
 use super::{DEFAULT_CUTOFF, EqualPeakMeasure, cutoff_of, evenly_spread, falling_amplitude, outermost_singular};
 use crate::contact::Contact;
-use crate::error::Error;
+use crate::contact::state::{Move, Regime, Tangential};
 use crate::numerics::double_double::DoubleDouble;
 use crate::range::Quantity;
-use crate::shear_stress::Residual;
-use crate::state::{Move, Regime, Tangential};
+use crate::range::error::Error;
+use crate::surface::shear_stress::Residual;
 
 /// A displacement, force or stress below this share of its unit is zero but for rounding.
 const NEGLIGIBLE: f64 = 1e-9;

@@ -7,7 +7,7 @@
 
 use super::minimax::{Problem, VirginStrokes};
 use super::{PathEnd, alternating};
-use crate::normal::{load, whole};
+use crate::contact::normal::{load, whole};
 use crate::numerics::broyden::{inverse, product, updated};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::between;

@@ -5,10 +5,10 @@
 
 use crate::cells::Cell;
 use crate::cells::shape::Reach;
+use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWELVE_POINTS;
 use crate::numerics::roots::within;
-use crate::indenter::Indenter;
 
 /// s between two radii.
 pub(super) struct EqualPeakMeasure<'a> {

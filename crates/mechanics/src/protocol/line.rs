@@ -9,9 +9,9 @@ use std::borrow::Cow;
 
 use super::{AmplitudeLaw, Design, EvaluationRange, FirstMove, PathEnd, PathStart, design};
 use crate::contact::Contact;
-use crate::error::Error;
+use crate::contact::state::{Move, Regime, Tangential};
 use crate::profile::LineContact;
-use crate::state::{Move, Regime, Tangential};
+use crate::range::error::Error;
 
 impl Contact {
     /// The face at the present load, as if it had never been moved.

@@ -6,9 +6,9 @@
 //! centre meets it too.
 
 use super::alternating;
+use crate::indenter::{Indenter, InwardSum};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{between, largest_of};
-use crate::indenter::{Indenter, InwardSum};
 use crate::profile::{Point, Ring, StressRadius};
 
 /// The largest number of evaluations of E, after it has been bracketed.

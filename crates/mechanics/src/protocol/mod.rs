@@ -26,13 +26,13 @@ use end_constraint::Equations;
 use equal_peak_measure::EqualPeakMeasure;
 use minimax::Problem;
 
-use super::profile::Point;
-use super::range::Quantity;
-use super::unit_prefix::short;
 use crate::contact::Contact;
-use crate::error::Error;
-use crate::numerics::double_double::DoubleDouble;
 use crate::indenter::Indenter;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Point;
+use crate::range::Quantity;
+use crate::range::error::Error;
+use crate::range::unit_prefix::short;
 
 /// The part of the way from the innermost radius, where s diverges, to the edge, at which equal peaks begin.
 pub const DEFAULT_CUTOFF: f64 = 0.1;
@@ -117,8 +117,9 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
         None => cutoff_of(singular, edge),
     };
     // From the radius where s diverges on the law is not defined.
-    let spread =
-        (singular.is_none() || cutoff > least).then(|| EqualPeakMeasure::new(&contact.indenter, cutoff, edge)).flatten();
+    let spread = (singular.is_none() || cutoff > least)
+        .then(|| EqualPeakMeasure::new(&contact.indenter, cutoff, edge))
+        .flatten();
     // The first stroke is gross slip, which wipes out the history.
     let displacements = evenly_spread(contact, spread.as_ref(), reversals, contact.gross_slip_displacement());
     Ok(EqualPeaks { displacements: displacements.collect(), cutoff_radius: cutoff })

@@ -2,8 +2,8 @@
 
 use super::EvaluationRange;
 use crate::contact::Contact;
-use crate::error::Error;
-use crate::state::{Move, Tangential};
+use crate::contact::state::{Move, Tangential};
+use crate::range::error::Error;
 
 /// The random errors of a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,11 +8,11 @@ use super::mesh::{Mesh, Vector};
 use super::solution::{Blend, Solution};
 use super::{PlanarMove, PlanarTarget, TURNED};
 use crate::contact::Contact;
-use crate::error::Error;
+use crate::contact::state::{Move, Normal, Setup, Tangential};
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Profile;
 use crate::range;
-use crate::state::{Move, Normal, Setup, Tangential};
+use crate::range::error::Error;
 
 /// Steps of a move in the discretisations, over those of the coarsest. The last one has all the rings, the others half
 /// of them: the error by the steps hardly depends on the rings.

@@ -12,11 +12,11 @@ use super::mesh::{Mesh, Vector};
 use super::slip::{Workspace, solve};
 use super::{NO_SLIP, PlanarState, TURNED};
 use crate::contact::Contact;
-use crate::error::Error;
+use crate::contact::state::{Normal, Regime, Setup};
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Profile;
 use crate::range;
-use crate::state::{Normal, Regime, Setup};
+use crate::range::error::Error;
 
 /// The part of the indentation to which a contact is unloaded at once.
 const UNLOADED: f64 = 0.5;

@@ -4,8 +4,8 @@
 //! levels (Jäger 1995) carry X - sqrt(X^2 - r^2) within r, and x dx/sqrt(x^2 - r^2) = dt after an integration by
 //! parts.
 
-use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};
 use crate::indenter::Indenter;
+use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};
 
 /// Kinks up to which each begins a panel of its own. A profile of more is a table, smooth but for its knots.
 const MOST_KINKS: usize = 8;

@@ -21,7 +21,7 @@ pub use solution::{PlanarState, Solution};
 
 use std::f64::consts::TAU;
 
-use crate::state::Normal;
+use crate::contact::state::Normal;
 
 /// A slip up to this, relative to the displacement of gross slip, is rounding.
 const NO_SLIP: f64 = 1e-12;

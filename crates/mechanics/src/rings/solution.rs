@@ -4,7 +4,7 @@ use super::field::Field;
 use super::follow::Scene;
 use super::level::Level;
 use super::mesh::Vector;
-use crate::state::{Regime, State};
+use crate::contact::state::{Regime, State};
 
 /// The state after a move in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

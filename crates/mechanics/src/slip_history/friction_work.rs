@@ -6,9 +6,9 @@
 //! however small the move. Works here are over 2 G* m^2, in m^3.
 
 use super::piece::{Line, Piece, SAME_TURNING_POINT, THINNEST_CORE};
-use crate::limit::Limit;
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::{Moments, Point, Ring};
+use crate::slip_history::limit::Limit;
 
 /// The ring that slips at the end of a move: towards `sign`, with w = sign (indentation - y).
 pub(super) struct SlipRing {

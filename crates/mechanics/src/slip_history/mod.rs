@@ -13,12 +13,13 @@
 
 mod friction_work;
 mod instants;
+pub(crate) mod limit;
 mod packed;
 mod piece;
 
-use super::profile::{Moments, Point, Ring};
-use crate::limit::Limit;
 use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Moments, Point, Ring};
+use crate::slip_history::limit::Limit;
 use friction_work::{SlipRing, Unloading};
 pub(super) use piece::{Line, Piece};
 use piece::{SAME_TURNING_POINT, Sums, THINNEST_CORE, rise};
@@ -339,9 +340,5 @@ fn closes_at(indentation: DoubleDouble, shift: DoubleDouble, change: f64) -> f64
 
 /// The edge of a contact at `indentation`; with a gap there is none, and its radius is zero.
 fn edge_at(limit: &impl Limit, indentation: DoubleDouble) -> Point {
-    if indentation.value() < 0.0 {
-        Point { level: indentation, ..Point::default() }
-    } else {
-        limit.point(indentation)
-    }
+    if indentation.value() < 0.0 { Point { level: indentation, ..Point::default() } } else { limit.point(indentation) }
 }

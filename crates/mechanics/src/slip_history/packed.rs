@@ -6,13 +6,14 @@
 
 use super::{Line, Piece, Point, SlipHistory, Sums};
 use crate::numerics::double_double::DoubleDouble;
-use crate::packed::{Packed, Reader, packed};
+use crate::numerics::packing::{Packed, Reader, packed};
 
 /// Bytes before the pieces: edge, sums, position, reference, mark and start of slip.
 const HEAD: usize = 2 * size_of::<Point>() + size_of::<Sums>() + 2 * size_of::<DoubleDouble>() + size_of::<f64>();
 /// Bytes of a piece: its inner end, its line, the sums below it.
 const PIECE: usize = size_of::<Point>() + size_of::<Line>() + size_of::<Sums>();
 
+packed!(Point { level, radius, square });
 packed!(Line { offset, slope });
 packed!(Sums { force, energy, size });
 

@@ -6,9 +6,9 @@
 
 use std::fmt;
 
-use crate::limit::Limit;
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::{Moments, Point, Ring};
+use crate::slip_history::limit::Limit;
 
 /// A stuck core thinner than this, relative to the indentation, is gross slip, because the displacement of gross slip
 /// is itself rounded. w at the edge is rounded by as much.

@@ -1,7 +1,7 @@
 //! The error of the spring foundation, measured against the exact contact that makes the same moves.
 
 use super::Springs;
-use crate::accuracy::ErrorEstimate;
+use crate::contact::accuracy::ErrorEstimate;
 
 /// Radii at even distances at which stresses are compared, and kinks of the displacement beside which they are.
 const COMPARED: usize = 128;

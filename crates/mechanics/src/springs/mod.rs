@@ -14,12 +14,12 @@ use std::sync::Arc;
 pub use shear_evaluation::ShearEvaluation;
 
 use crate::contact::Contact;
-use crate::error::{Error, UnsupportedMove};
-use crate::normal::ContactSummary;
+use crate::contact::normal::ContactSummary;
+use crate::contact::state::{Move, Normal, Regime, Setup, State, Tangential};
 use crate::numerics::roots::turning;
 use crate::profile::Profile;
 use crate::range;
-use crate::state::{Move, Normal, Regime, Setup, State, Tangential};
+use crate::range::error::{Error, UnsupportedMove};
 
 /// A slip up to this, relative to bound and move, is the rounding of displacements.
 const NO_SLIP: f64 = 8.0 * f64::EPSILON;

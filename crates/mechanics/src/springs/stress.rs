@@ -1,7 +1,7 @@
 //! Stresses, surface displacement and slip of the spring foundation.
 
 use super::{Spring, Springs};
-use crate::shear_stress::{Peak, Residual};
+use crate::surface::shear_stress::{Peak, Residual};
 
 /// The largest number of radii of the search for extrema.
 const SCAN: usize = 2000;
@@ -19,7 +19,8 @@ impl Springs {
     /// Pressure, Pa, at a radius, m.
     #[must_use]
     pub fn pressure(&self, radius: f64) -> f64 {
-        self.virgin.elasticity.e_star() * self.stress(radius, self.rim_depth(), |spring| self.indentation - spring.level)
+        self.virgin.elasticity.e_star()
+            * self.stress(radius, self.rim_depth(), |spring| self.indentation - spring.level)
     }
 
     /// Shear stress, Pa, at a radius, m.

@@ -10,10 +10,10 @@
 
 use super::complex::Complex;
 use crate::contact::Contact;
-use crate::line_surface::Zone;
 use crate::numerics::gauss::TWENTY_POINTS;
 use crate::profile::LineContact;
 use crate::subsurface::Stress;
+use crate::surface::line_surface::Zone;
 
 /// Places whose distance squared from the flat's end, over s^2, exceeds this see a pad by quadrature.
 const FAR: f64 = 4.0;

@@ -9,10 +9,10 @@
 //! with an error of 8^-16.
 
 use super::complex::Complex;
-use crate::indenter::Indenter;
 use crate::cells::shape::Reach;
 use crate::cells::span::Span;
 use crate::cells::{Cell, SpanParts};
+use crate::indenter::Indenter;
 use crate::numerics::chebyshev::{self, SIXTEEN};
 use crate::numerics::cluster_tree::{Cluster, ClusterTree};
 use crate::numerics::gauss::TWELVE_POINTS;

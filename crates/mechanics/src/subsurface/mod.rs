@@ -15,10 +15,11 @@ mod tensor;
 use std::f64::consts::PI;
 use std::sync::OnceLock;
 
-use super::contact::Contact;
-use super::profile::{LineContact, Profile, Ring};
-use crate::error::Error;
+use crate::contact::Contact;
+pub use crate::elasticity::Side;
+use crate::profile::{LineContact, Profile, Ring};
 use crate::range;
+use crate::range::error::Error;
 use kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use line::LineField;
 use mesh::{Mesh, Source};
@@ -34,15 +35,6 @@ const NUMERICAL: f64 = 4e-12;
 const GAIN: f64 = 4.0;
 /// Depth, in contact radii, below which a point is taken as one of the surface: the stress changes with its root.
 const SURFACE: f64 = 1e-36;
-
-/// One of the two bodies in contact.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
-    /// The one that carries the profile and moves along x. Its surface is dragged back by -tau.
-    First,
-    /// The plane one, dragged along by tau.
-    Second,
-}
 
 /// The stress field below one surface in the state of a contact when it was asked for.
 #[derive(Clone, Debug)]

@@ -16,16 +16,16 @@ use std::f64::consts::{FRAC_2_PI, PI};
 
 pub use table::WornTable;
 
-use crate::indenter::Indenter;
 use crate::contact::Contact;
-use crate::error::Error;
-use crate::normal;
+use crate::contact::normal;
+use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{TWENTY_POINTS, by_halves, integral};
 use crate::numerics::roots::{between, largest_of};
 use crate::profile::{Point, Profile, Ring, StressRadius};
 use crate::range::Quantity;
-use crate::unit_prefix::short;
+use crate::range::error::Error;
+use crate::range::unit_prefix::short;
 
 /// Squares of radii of the first scan for the largest depth, evenly spaced, and levels of it.
 const DEPTH_SCAN: usize = 24;

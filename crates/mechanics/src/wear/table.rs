@@ -10,8 +10,8 @@ use std::f64::consts::FRAC_2_PI;
 
 use super::{WornContact, unworn_heights};
 use crate::cells::shape::Shape;
+use crate::contact::normal;
 use crate::indenter::Indenter;
-use crate::normal;
 use crate::numerics::gauss::{TWENTY_POINTS, integral};
 use crate::profile::{Profile, Tabulated};
 

@@ -74,8 +74,9 @@ fn any_level_of_the_exact_sphere_has_a_radius_below_the_limit() {
 #[test]
 fn only_the_ring_at_the_tip_of_a_cone_is_infinite_there() {
     let cone = Profile::Cone(Cone::new(0.4).unwrap());
-    let at_tip =
-        |inner: f64, outer: f64| cone.indenter().kernel(&StressRadius::new(0.0), &ring(&cone, DoubleDouble::from(inner), outer));
+    let at_tip = |inner: f64, outer: f64| {
+        cone.indenter().kernel(&StressRadius::new(0.0), &ring(&cone, DoubleDouble::from(inner), outer))
+    };
     assert_eq!(at_tip(0.0, 0.1).to_bits(), f64::INFINITY.to_bits());
     assert!((at_tip(0.1, 0.2) / (0.4 * std::f64::consts::FRAC_PI_2 * 2f64.ln()) - 1.0).abs() < 1e-15);
 }
@@ -88,7 +89,9 @@ fn kernels_of_odd_powers_are_finite_at_the_centre_and_so_are_their_slopes_off_it
         let whole = ring(&power, DoubleDouble::ZERO, power.indenter().level(0.4));
         // int g'(x)/x dx = n B x^(n-1)/(n - 1).
         let kernel = power.indenter().slope(0.4) / (n - 1.0);
-        let [sum, ..] = power.indenter().kernel_sums(&[(whole, 1.0)], &[0.0, 1e-170, 0.1])[..] else { panic!("three sums") };
+        let [sum, ..] = power.indenter().kernel_sums(&[(whole, 1.0)], &[0.0, 1e-170, 0.1])[..] else {
+            panic!("three sums")
+        };
         assert!((sum / kernel - 1.0).abs() < 1e-14, "{n}: {sum} {kernel}");
         // Half of int g'(x)/x^3 dx.
         let outer = ring(&power, DoubleDouble::from(power.indenter().level(0.1)), power.indenter().level(0.4));
@@ -140,7 +143,8 @@ fn a_tiny_flat_and_a_huge_one() {
         for level in [1e-9, 1e-3, 1.0, 1e3] {
             let back = cone.indenter().level(cone.indenter().radius(level));
             // Near the flat the level depends on x - b, of which a rounded x keeps few digits.
-            let allowed = 1e-15 * (level + cone.indenter().slope(cone.indenter().radius(level)) * cone.indenter().radius(level));
+            let allowed =
+                1e-15 * (level + cone.indenter().slope(cone.indenter().radius(level)) * cone.indenter().radius(level));
             assert!((back - level).abs() < allowed, "{flat} {level} {back}");
         }
     }

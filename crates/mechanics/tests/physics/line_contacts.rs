@@ -387,8 +387,9 @@ fn rings_of_a_line_contact_add_up_however_thin_they_are() {
     for line in lines {
         let profile = Profile::Line(line);
         for _ in 0..200 {
-            let top = profile
-                .indenter().level_at_edge(profile.indenter().contact_radius(0.0).max(1e-5) * (1.0 + 10f64.powf(6.0 * random.f64() - 5.0)));
+            let top = profile.indenter().level_at_edge(
+                profile.indenter().contact_radius(0.0).max(1e-5) * (1.0 + 10f64.powf(6.0 * random.f64() - 5.0)),
+            );
             let low = top * (1.0 - 10f64.powf(-9.0 * random.f64()));
             let middle = low + (top - low) * random.f64();
             let [low, middle, high] = [low, middle, top].map(|level| profile.indenter().point(level.into()));

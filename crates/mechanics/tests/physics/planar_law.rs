@@ -47,7 +47,9 @@ fn at_a_constant_load_steps_along_a_line_are_those_of_the_exact_law() {
     // On smooth shapes, and on those with a tip, a kink or a rim.
     let mut worst = [[0.0_f64; 2]; 2];
     for (profile, depth) in shapes() {
-        let smooth = profile.indenter().smooth_centre() && profile.indenter().singular_radii().is_empty() && profile.indenter().rim_radius().is_none();
+        let smooth = profile.indenter().smooth_centre()
+            && profile.indenter().singular_radii().is_empty()
+            && profile.indenter().rim_radius().is_none();
         let kind = usize::from(!smooth);
         let elasticity = Elasticity::effective(1.1e11, 9e10).unwrap();
         let setup = Setup { profile, elasticity, friction: 0.3, preload: Preload::Indentation(depth) };

@@ -54,7 +54,9 @@ fn cusp(profile: &Profile, function: &str, a: &[f64]) -> f64 {
         if v < 1e-2 * point.radius {
             size += match function {
                 "kernel" if r < point.radius => profile.indenter().slope(point.radius) * point.radius / v,
-                "kernel_slope" => profile.indenter().kernel_slope(&StressRadius::new(r), &ring).abs() * (point.radius / v).powi(2),
+                "kernel_slope" => {
+                    profile.indenter().kernel_slope(&StressRadius::new(r), &ring).abs() * (point.radius / v).powi(2)
+                }
                 "lift" if r > point.radius => depth * point.radius / v,
                 _ => 0.0,
             };
@@ -134,7 +136,9 @@ fn a_flat_punch_is_all_edge() {
     let ring = ring(&punch, level, depth);
     let m = punch.indenter().moments(&ring);
     assert!(m.width + m.first + m.second < 1e-300);
-    assert!((punch.indenter().radius(1.0) - 0.002).abs() < 1e-300 && (punch.indenter().radius(0.0) - 0.002).abs() < 1e-300);
+    assert!(
+        (punch.indenter().radius(1.0) - 0.002).abs() < 1e-300 && (punch.indenter().radius(0.0) - 0.002).abs() < 1e-300
+    );
     let kernel = punch.indenter().kernel(&StressRadius::new(0.0012), &ring);
     assert!((kernel / (depth / 0.0016) - 1.0).abs() < 1e-15);
     assert!(punch.indenter().kernel(&StressRadius::new(0.002), &ring).is_infinite());
@@ -150,7 +154,10 @@ fn a_punch_caps_a_sum() {
     assert!((sum.indenter().radius(2.0 * rim) - 0.001).abs() < 1e-18);
     // Half of the ring's levels lie on the face, half at the edge.
     let ring = ring(&sum, 1.5 * rim, rim);
-    let face = Ring::between(sphere.indenter().point(DoubleDouble::from(0.5 * rim)), sphere.indenter().point(DoubleDouble::from(rim)));
+    let face = Ring::between(
+        sphere.indenter().point(DoubleDouble::from(0.5 * rim)),
+        sphere.indenter().point(DoubleDouble::from(rim)),
+    );
     let (m, n) = (sum.indenter().moments(&ring), sphere.indenter().moments(&face));
     assert!((m.width / n.width - 1.0).abs() < 1e-14);
     assert!((m.first / (n.first + 0.5 * rim * n.width) - 1.0).abs() < 1e-14);
@@ -177,7 +184,11 @@ fn infinities_are_where_they_belong_and_never_nan() {
         ("sum", "cone 0.3 + truncated_sphere 0.01 0.001", Some(0.001)),
     ] {
         let profile = profile(family, parameters);
-        assert_eq!(profile.indenter().singular_radii().last().map(|r| r.to_bits()), singular.map(f64::to_bits), "{family}");
+        assert_eq!(
+            profile.indenter().singular_radii().last().map(|r| r.to_bits()),
+            singular.map(f64::to_bits),
+            "{family}"
+        );
         let d = profile.indenter().level(0.002);
         let whole = ring(&profile, d, d);
         for r in [0.0, 1e-300, 1e-20, 0.001, 0.001 * (1.0 + 1e-15), 0.002, 0.002 * (1.0 - 1e-15), 0.003, 1e9] {
@@ -185,7 +196,8 @@ fn infinities_are_where_they_belong_and_never_nan() {
             let (k, s) = (profile.indenter().kernel(&at, &whole), profile.indenter().kernel_slope(&at, &whole));
             assert!(!k.is_nan() && k >= 0.0 && !s.is_nan(), "{family} {r}: {k} {s}");
             assert!(
-                profile.indenter().displacement_integral(&at, &whole) >= 0.0 && profile.indenter().arc(&at, &whole) >= 0.0,
+                profile.indenter().displacement_integral(&at, &whole) >= 0.0
+                    && profile.indenter().arc(&at, &whole) >= 0.0,
                 "{family} {r}"
             );
         }
@@ -193,7 +205,10 @@ fn infinities_are_where_they_belong_and_never_nan() {
             assert!(profile.indenter().kernel(&StressRadius::new(r), &whole).is_infinite(), "{family}");
         }
         let nothing = ring(&profile, 0.0, 0.0);
-        assert!(profile.indenter().kernel(&StressRadius::new(0.0), &nothing).is_finite() || singular.is_some(), "{family}");
+        assert!(
+            profile.indenter().kernel(&StressRadius::new(0.0), &nothing).is_finite() || singular.is_some(),
+            "{family}"
+        );
         assert!(profile.indenter().moments(&nothing).first < 1e-300, "{family}");
     }
 }
@@ -212,7 +227,10 @@ fn a_profile_that_ends_says_where() {
     assert!((table.indenter().radius(1.0) / limit - 1.0).abs() < 1e-15);
     assert!(matches!(table.indenter().check_radius(limit), Err(Error::BeyondProfile { .. })));
     let beyond = ring(&table, 1.0, 1.0);
-    assert!(table.indenter().kernel(&StressRadius::new(0.0), &beyond).is_finite() && table.indenter().moments(&beyond).first.is_finite());
+    assert!(
+        table.indenter().kernel(&StressRadius::new(0.0), &beyond).is_finite()
+            && table.indenter().moments(&beyond).first.is_finite()
+    );
 }
 
 /// Any profile at all, with a contact radius that suits it.
@@ -241,7 +259,8 @@ fn any_profile() -> impl Strategy<Value = (Profile, f64)> {
             let sum = || Profile::Sum(Sum::new((0..=families().len()).map(one).filter(has_no_rim).collect()).unwrap());
             let profile = if index <= families().len() { one(index) } else { sum() };
             // Beyond a flat end, within what is known.
-            let (core, end) = (profile.indenter().radius(0.0), profile.indenter().limit_radius().unwrap_or(f64::INFINITY));
+            let (core, end) =
+                (profile.indenter().radius(0.0), profile.indenter().limit_radius().unwrap_or(f64::INFINITY));
             let radius = if core < 0.9 * a { a } else { core / share.max(0.1) };
             (profile, radius.min(core + 0.9 * (end - core)))
         })
@@ -273,25 +292,27 @@ proptest! {
 
     #[test]
     fn the_inverse_is_one((profile, a) in any_profile(), share in 0.0..1.0f64) {
-        let core = profile.indenter().radius(0.0);
+        let indenter = profile.indenter();
+        let core = indenter.radius(0.0);
         let x = core + share * (a - core);
-        let y = profile.indenter().level(x);
+        let y = indenter.level(x);
         let tolerance = if matches!(profile, Profile::Tabulated(_) | Profile::Sum(_)) { 3e-13 } else { 3e-15 };
         // The level is a double, whose last place moves the radius of a power of 0.1 by ten of its own.
-        let tolerance = tolerance * (y / (x * profile.indenter().slope(x))).max(1.0);
-        prop_assert!(close(profile.indenter().radius(y), x, tolerance), "{} {}", profile.indenter().radius(y), x);
+        let tolerance = tolerance * (y / (x * indenter.slope(x))).max(1.0);
+        prop_assert!(close(indenter.radius(y), x, tolerance), "{} {}", indenter.radius(y), x);
     }
 
     #[test]
     fn adjacent_rings_add_up(
         (profile, a) in any_profile(), low in 0.01..0.98f64, cut in 0.01..0.99f64, r in 0.0..1.3f64,
     ) {
-        let y = profile.indenter().level(a);
-        let point = |share: f64| profile.indenter().point(DoubleDouble::from(y) * share);
+        let indenter = profile.indenter();
+        let y = indenter.level(a);
+        let point = |share: f64| indenter.point(DoubleDouble::from(y) * share);
         let (inner, middle, outer) = (point(low), point(low + cut * (1.0 - low)), point(1.0));
         let (below, above, whole) =
             (Ring::between(inner, middle), Ring::between(middle, outer), Ring::between(inner, outer));
-        let (m, n, w) = (profile.indenter().moments(&below), profile.indenter().moments(&above), profile.indenter().moments(&whole));
+        let [m, n, w] = [below, above, whole].map(|ring| indenter.moments(&ring));
         let sum = Moments {
             width: m.width + n.width,
             first: m.first + above.depth * m.width + n.first,
@@ -304,11 +325,12 @@ proptest! {
         let at = StressRadius::new(r * a);
         let apart = [inner, middle, outer].iter().all(|point| (point.radius / at.radius - 1.0).abs() > 1e-3);
         if apart {
-            let (one, two) = (profile.indenter().kernel(&at, &below) + profile.indenter().kernel(&at, &above), profile.indenter().kernel(&at, &whole));
+            let [one, other, two] = [below, above, whole].map(|ring| indenter.kernel(&at, &ring));
+            let one = one + other;
             prop_assert!(close(one, two, tolerance), "{one} {two}");
-            let one = profile.indenter().displacement_integral(&at, &below) + profile.indenter().displacement_integral(&at, &above) +
-                above.depth * profile.indenter().arc(&at, &below);
-            prop_assert!(close(one, profile.indenter().displacement_integral(&at, &whole), tolerance), "{one}");
+            let [inside, outside] = [below, above].map(|ring| indenter.displacement_integral(&at, &ring));
+            let one = inside + outside + above.depth * indenter.arc(&at, &below);
+            prop_assert!(close(one, indenter.displacement_integral(&at, &whole), tolerance), "{one}");
         }
     }
 
@@ -316,15 +338,17 @@ proptest! {
     fn two_halves_are_the_whole(a in 1e-6..1.0f64, n in 0.2..9.0f64, r in 0.0..1.0f64, low in 0.0..0.99f64) {
         let law = |share: f64| Profile::PowerLaw(PowerLaw::new(n, share * 0.1 * a.powf(1.0 - n)).unwrap());
         let (whole, sum) = (law(1.0), Profile::Sum(Sum::new(vec![law(0.5), law(0.5)]).unwrap()));
-        let y = whole.indenter().level(a);
+        let (one_law, two_laws) = (whole.indenter(), sum.indenter());
+        let y = one_law.level(a);
         let (one, two) = (ring(&whole, y, y * (1.0 - low)), ring(&sum, y, y * (1.0 - low)));
-        let (m, n) = (whole.indenter().moments(&one), sum.indenter().moments(&two));
+        let (m, n) = (one_law.moments(&one), two_laws.moments(&two));
         prop_assert!(close(m.width, n.width, 1e-12) && close(m.first, n.first, 1e-12) &&
             close(m.second, n.second, 1e-12), "{m:?} {n:?}");
         let at = StressRadius::new(r * a);
         if (one.inner.radius / at.radius - 1.0).abs() > 1e-3 && r < 0.999 {
-            prop_assert!(close(whole.indenter().kernel(&at, &one), sum.indenter().kernel(&at, &two), 1e-12));
-            prop_assert!(close(whole.indenter().displacement_integral(&at, &one), sum.indenter().displacement_integral(&at, &two), 1e-12));
+            prop_assert!(close(one_law.kernel(&at, &one), two_laws.kernel(&at, &two), 1e-12));
+            let [one, two] = [one_law.displacement_integral(&at, &one), two_laws.displacement_integral(&at, &two)];
+            prop_assert!(close(one, two, 1e-12));
         }
     }
 
@@ -333,33 +357,35 @@ proptest! {
         profile in wild(), decade in -30.0..9.0f64, share in prop::sample::select(vec![1.0, 0.5, 1e-7, 1e-16]),
         r in 0.0..1.5f64,
     ) {
+        let indenter = profile.indenter();
         let y = 10f64.powf(decade);
         let ring = ring(&profile, y, share * y);
-        if profile.indenter().check_radius(ring.outer.radius).is_err() {
+        if indenter.check_radius(ring.outer.radius).is_err() {
             return Ok(());
         }
-        let m = profile.indenter().moments(&ring);
+        let m = indenter.moments(&ring);
         prop_assert!(m.width >= 0.0 && m.first >= 0.0 && m.second >= 0.0, "{m:?}");
         let anywhere = StressRadius::new(r * ring.outer.radius);
         let ends = [StressRadius::of_point(&ring.inner), StressRadius::of_point(&ring.outer)];
         for at in [anywhere, StressRadius::new(0.0), ends[0], ends[1]] {
-            prop_assert!(profile.indenter().kernel(&at, &ring) >= 0.0, "{at:?}");
-            prop_assert!(!profile.indenter().kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
-            prop_assert!(profile.indenter().displacement_integral(&at, &ring) >= 0.0 && profile.indenter().arc(&at, &ring) >= 0.0, "{at:?}");
+            prop_assert!(indenter.kernel(&at, &ring) >= 0.0, "{at:?}");
+            prop_assert!(!indenter.kernel_slope(&at, &ring).is_nan(), "{at:?} {ring:?}");
+            prop_assert!(indenter.displacement_integral(&at, &ring) >= 0.0 && indenter.arc(&at, &ring) >= 0.0, "{at:?}");
         }
-        prop_assert!(profile.indenter().indentation_for(y * y) > 0.0);
+        prop_assert!(indenter.indentation_for(y * y) > 0.0);
     }
 
     #[test]
     fn loads_of_any_size_have_an_indentation((profile, a) in any_profile(), decade in -20.0..2.0f64) {
-        let load = profile.indenter().level(a) * a * 10f64.powf(decade);
-        let d = profile.indenter().indentation_for(load);
+        let indenter = profile.indenter();
+        let load = indenter.level(a) * a * 10f64.powf(decade);
+        let d = indenter.indentation_for(load);
         prop_assert!(d > 0.0 && d.is_finite());
-        prop_assume!(profile.indenter().check_radius(profile.indenter().radius(d)).is_ok());
+        prop_assume!(indenter.check_radius(indenter.radius(d)).is_ok());
         // d load = X dd, and X lies between that at half the indentation and that at all of it.
         let ratio = load / d;
-        prop_assert!(ratio <= profile.indenter().radius(d) * (1.0 + 1e-12) &&
-            ratio >= 0.5 * profile.indenter().radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
+        prop_assert!(ratio <= indenter.radius(d) * (1.0 + 1e-12) &&
+            ratio >= 0.5 * indenter.radius(0.5 * d) * (1.0 - 1e-12), "{ratio}");
     }
 
     #[test]
@@ -370,10 +396,11 @@ proptest! {
         let cone = |share: f64| Profile::TruncatedCone(TruncatedCone::new(share * slope, core).unwrap());
         let profile = if halves { Profile::Sum(Sum::new(vec![cone(0.5), cone(0.5)]).unwrap()) } else { cone(1.0) };
         let load = core * core * 10f64.powf(depth);
-        let d = profile.indenter().indentation_for(load);
+        let indenter = profile.indenter();
+        let d = indenter.indentation_for(load);
         // load = int X dd, and X lies between the core and X(d).
         let ratio = load / d;
-        prop_assert!(ratio >= core * (1.0 - 1e-12) && ratio <= profile.indenter().radius(d) * (1.0 + 1e-12), "{ratio} {core}");
+        prop_assert!(ratio >= core * (1.0 - 1e-12) && ratio <= indenter.radius(d) * (1.0 + 1e-12), "{ratio} {core}");
     }
 
     #[test]
@@ -381,10 +408,10 @@ proptest! {
         let (slope, edge) = (10f64.powf(slope), 10f64.powf(radius));
         let sphere = || Profile::Sphere(Sphere::new(10.0 * edge).unwrap());
         let cone = Profile::TruncatedCone(TruncatedCone::new(slope, edge * (1.0 + beyond)).unwrap());
-        let sum = Profile::Sum(Sum::new(vec![cone, sphere()]).unwrap());
+        let sum = Profile::Sum(Sum::new(vec![cone, sphere()]).unwrap()).indenter();
         let level = sphere().indenter().level(edge);
-        prop_assert!(close(sum.indenter().radius(level), edge, 1e-14), "{} {edge}", sum.indenter().radius(level));
+        prop_assert!(close(sum.radius(level), edge, 1e-14), "{} {edge}", sum.radius(level));
         let load = sphere().indenter().moments(&ring(&sphere(), level, level)).first;
-        prop_assert!(close(sum.indenter().indentation_for(load), level, 1e-13), "{} {level}", sum.indenter().indentation_for(load));
+        prop_assert!(close(sum.indentation_for(load), level, 1e-13), "{} {level}", sum.indentation_for(load));
     }
 }

@@ -122,7 +122,10 @@ fn shape_depth_and_volume_are_integrals_of_g() {
             let worn = WornContact::new(&contact, share * contact.gross_slip_displacement()).unwrap();
             let (stick, end) = (worn.stick_radius(), worn.worn_radius());
             if !worn.wears() {
-                assert!(profile.indenter().rim_radius().is_some() && (worn.removed_volume(), end) == (0.0, stick), "{profile:?}");
+                assert!(
+                    profile.indenter().rim_radius().is_some() && (worn.removed_volume(), end) == (0.0, stick),
+                    "{profile:?}"
+                );
                 continue;
             }
             let unworn = |x: f64| profile.indenter().level(x);

@@ -6,10 +6,9 @@
 //! stroke drops out: e = +-R k kappa F_N (1 - c^2/a^2), so that all zones of a history are one family of nested
 //! ellipses. They are nested as long as 2 |e| at c = 0 is no more than a.
 
-use crate::elasticity::Body;
-use crate::error::Error;
+use crate::elasticity::{Body, Side};
 use crate::range;
-use crate::subsurface::Side;
+use crate::range::error::Error;
 
 /// The stress of a body along x over the tangential force.
 #[derive(Clone, Copy, Debug, PartialEq)]

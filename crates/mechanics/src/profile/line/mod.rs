@@ -23,10 +23,10 @@ pub use pad::PadFace;
 
 use super::curve_family::CurveFamily;
 use super::{Moments, Point, Profile, Ring, Sphere};
-use crate::error::Error;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{TWELVE_POINTS, integral};
 use crate::numerics::roots::within;
+use crate::range::error::Error;
 use crate::range::{self, Quantity, Range};
 
 /// The part of the reference length that half-widths stay below: at the length itself the approach would no longer
@@ -120,7 +120,7 @@ impl LineContact {
             value: self.reference_length,
             allowed: format!(
                 "above {}, the half-width of the flat over {WIDEST}",
-                crate::unit_prefix::in_unit(least / WIDEST, "m")
+                crate::range::unit_prefix::in_unit(least / WIDEST, "m")
             ),
         })
     }

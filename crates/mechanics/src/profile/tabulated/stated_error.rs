@@ -1,8 +1,8 @@
 //! The error of a table whose heights were fitted, as the fit states it.
 
 use super::{InterpolationError, Tabulated};
-use crate::error::{Error, TableFault};
 use crate::range;
+use crate::range::error::{Error, TableFault};
 
 impl Tabulated {
     /// The same table with standard errors at its points, which take the place of what its heights say of interpolation

@@ -88,7 +88,10 @@ fn rings_of_a_table_are_those_of_the_sum() {
             assert!(error < 1e-12, "{idle} {inner} {outer}: {error:e}");
             for share in [0.2, 0.45, 0.999, 1.0, 1.2] {
                 let at = StressRadius::new(inner + share * (outer - inner));
-                let mut pairs = vec![(table.indenter().displacement_integral(&at, &ours), sum.indenter().displacement_integral(&at, &exact))];
+                let mut pairs = vec![(
+                    table.indenter().displacement_integral(&at, &ours),
+                    sum.indenter().displacement_integral(&at, &exact),
+                )];
                 if share < 1.0 {
                     pairs.push((table.indenter().kernel(&at, &ours), sum.indenter().kernel(&at, &exact)));
                     pairs.push((table.indenter().kernel_slope(&at, &ours), sum.indenter().kernel_slope(&at, &exact)));

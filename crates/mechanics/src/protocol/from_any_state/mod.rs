@@ -16,9 +16,9 @@ mod search;
 
 use super::minimax::{Problem, smallest};
 use super::{PathEnd, alternating, cutoff_of, outermost_singular, positions};
-use crate::indenter::Indenter;
 use crate::contact::Contact;
-use crate::normal::load;
+use crate::contact::normal::load;
+use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest_of, turning};
 use crate::profile::{Point, Ring, StressRadius};

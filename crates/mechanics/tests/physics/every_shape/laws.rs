@@ -204,7 +204,12 @@ impl Case<'_> {
             if bound < f64::INFINITY {
                 // Beside the edge both are as good as the distance to it is known.
                 let loose = 1e-9 + 1e-15 * a / (a - r.min(a)).max(f64::MIN_POSITIVE);
-                self.at_most(contact, &format!("|tau| <= mu p at {r:e}"), [tau.abs(), bound], loose * bound + 1e-9 * unit);
+                self.at_most(
+                    contact,
+                    &format!("|tau| <= mu p at {r:e}"),
+                    [tau.abs(), bound],
+                    loose * bound + 1e-9 * unit,
+                );
             }
             let one = [contact.pressure(r), contact.shear(r)];
             for (one, many, name) in [(one[0], p, "p"), (one[1], tau, "tau")] {
@@ -228,7 +233,8 @@ impl Case<'_> {
         inner.extend(residual.peaks.iter().map(|peak| peak.radius.abs()));
         inner.extend((1..6).map(|index| 0.2 * f64::from(index) * a).chain([contact.state().stick_radius]));
         let breaks = breaks(&inner, a);
-        if breaks.windows(2).any(|pair| pair[1] - pair[0] < THIN * a) {
+        let at_edge = |kink: &f64| (kink - a).abs() < THIN * a;
+        if breaks.windows(2).any(|pair| pair[1] - pair[0] < THIN * a) || shape.kinks.iter().any(at_edge) {
             // Radii as plain numbers do not tell the places in so thin an annulus apart.
             return;
         }
@@ -285,7 +291,8 @@ impl Case<'_> {
     /// A path of equal or falling amplitudes, and the same driven by the forces that it has.
     fn by_its_own_forces(&self, draw: &mut Draw<'_>) {
         let (full, limit) = (self.virgin.gross_slip_displacement(), self.virgin.summary().gross_slip_force);
-        let (mut amplitude, fall) = (full * draw.within(-1.2, 1.2), if draw.one_of(3) { 1.0 } else { draw.within(0.5, 1.0) });
+        let (mut amplitude, fall) =
+            (full * draw.within(-1.2, 1.2), if draw.one_of(3) { 1.0 } else { draw.within(0.5, 1.0) });
         let [mut one, mut other] = [self.virgin.clone(), self.virgin.clone()];
         for _ in 0..2 + draw.below(10) {
             let slide = Move { tangential: Some(Tangential::Displacement(amplitude)), ..Move::default() };

@@ -1,5 +1,5 @@
-//! Any shape: families, sums, tables, load curves, asperities, ellipsoids and lines, with what is known of each from its
-//! document alone.
+//! Any shape: families, sums, tables, load curves, asperities, ellipsoids and lines, with what is known of each from
+//! its document alone.
 
 use stickslip_mechanics::profile::{
     Asperities, Direction, Ellipsoid, LineContact, LoadCurve, Parameter, Sum, Tabulated, families,
@@ -120,7 +120,13 @@ fn sum(draw: &mut Draw<'_>) -> Result<Shape, Error> {
         all
     };
     let (spikes, kinks) = (below(|shape| &shape.spikes), below(|shape| &shape.kinks));
-    Ok(Shape { parts: shapes.into_iter().flat_map(|shape| shape.parts).collect(), rim, spikes, kinks, ..Shape::of(profile, 3e-6) })
+    Ok(Shape {
+        parts: shapes.into_iter().flat_map(|shape| shape.parts).collect(),
+        rim,
+        spikes,
+        kinks,
+        ..Shape::of(profile, 3e-6)
+    })
 }
 
 fn without_surface(draw: &mut Draw<'_>) -> Result<Shape, Error> {
@@ -139,7 +145,10 @@ fn without_surface(draw: &mut Draw<'_>) -> Result<Shape, Error> {
                 forces.push(forces[index] + slope * step);
             }
             let depth = depths[depths.len() - 1];
-            Ok(Shape { elasticity: bodies, ..Shape::of(Profile::LoadCurve(LoadCurve::new(&depths, &forces, &bodies)?), depth) })
+            Ok(Shape {
+                elasticity: bodies,
+                ..Shape::of(Profile::LoadCurve(LoadCurve::new(&depths, &forces, &bodies)?), depth)
+            })
         }
         _ => {
             let radii = [0.01 * draw.power(-1.0, 1.0), 0.01];

@@ -10,9 +10,8 @@
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
 //! | the rest | the slip history, see `slip_history/packed.rs` |
 
-use super::profile::Point;
-use crate::contact::Contact;
-use crate::numerics::double_double::DoubleDouble;
+use super::Contact;
+use crate::numerics::packing::{Packed, Reader};
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
@@ -23,82 +22,15 @@ pub const ENGINE: u16 = 18;
 /// The version of the arrangement of the bytes.
 const LAYOUT: u16 = 1;
 
-/// A value that is written as numbers one after the other, and read again if all are finite.
-pub(super) trait Packed: Sized {
-    fn pack(&self, bytes: &mut Vec<u8>);
-    fn unpack(reader: &mut Reader<'_>) -> Option<Self>;
-}
-
-/// A struct is packed field by field.
-macro_rules! packed {
-    ($Type:ident { $($field:ident),+ }) => {
-        impl Packed for $Type {
-            fn pack(&self, bytes: &mut Vec<u8>) {
-                $(self.$field.pack(bytes);)+
-            }
-
-            fn unpack(reader: &mut Reader<'_>) -> Option<Self> {
-                Some($Type { $($field: Packed::unpack(reader)?),+ })
-            }
-        }
-    };
-}
-pub(super) use packed;
-
-packed!(Point { level, radius, square });
-
-impl Packed for f64 {
-    fn pack(&self, bytes: &mut Vec<u8>) {
-        bytes.extend_from_slice(&self.to_le_bytes());
-    }
-
-    fn unpack(reader: &mut Reader<'_>) -> Option<f64> {
-        reader.any().filter(|value| value.is_finite())
-    }
-}
-
-impl Packed for DoubleDouble {
-    fn pack(&self, bytes: &mut Vec<u8>) {
-        let (hi, lo) = self.parts();
-        hi.pack(bytes);
-        lo.pack(bytes);
-    }
-
-    fn unpack(reader: &mut Reader<'_>) -> Option<DoubleDouble> {
-        Some(DoubleDouble::from_parts(f64::unpack(reader)?, f64::unpack(reader)?))
-    }
-}
-
-/// Reads numbers one after the other; `None` after the last byte.
-pub(super) struct Reader<'a>(&'a [u8]);
-
-impl Reader<'_> {
-    fn bytes<const N: usize>(&mut self) -> Option<[u8; N]> {
-        let (head, rest) = self.0.split_first_chunk()?;
-        self.0 = rest;
-        Some(*head)
-    }
-
-    /// Reads the versions at the beginning, and compares them with those of this program.
-    fn is_current(&mut self) -> bool {
-        [LAYOUT, ENGINE].into_iter().all(|version| self.bytes() == Some(version.to_le_bytes()))
-    }
-
-    /// A number whatever its bits.
-    fn any(&mut self) -> Option<f64> {
-        self.bytes().map(f64::from_le_bytes)
-    }
-
-    /// The number of items of `size` bytes in the rest, if it is whole.
-    pub(super) fn count(&self, size: usize) -> Option<usize> {
-        self.0.len().is_multiple_of(size).then_some(self.0.len() / size)
-    }
+/// Reads the versions at the beginning, and compares them with those of this program.
+fn is_current(reader: &mut Reader<'_>) -> bool {
+    [LAYOUT, ENGINE].into_iter().all(|version| reader.bytes() == Some(version.to_le_bytes()))
 }
 
 /// A state with its history as bytes.
 ///
 /// ```
-#[doc = include_str!("example.txt")]
+#[doc = include_str!("../example.txt")]
 /// contact.apply(&slide(0.001))?;
 /// let bytes = contact.pack();
 /// assert_eq!(contact.packed_length(), bytes.len());
@@ -136,7 +68,7 @@ impl Contact {
     /// Whether bytes are of this layout and engine, so that [`Contact::unpack`] reads them if they are undamaged.
     #[must_use]
     pub fn is_current_packing(bytes: &[u8]) -> bool {
-        Reader(bytes).is_current()
+        is_current(&mut Reader(bytes))
     }
 
     /// The contact in the packed state, equal to the last bit to the one that was packed. `self` is any state of a
@@ -145,7 +77,7 @@ impl Contact {
     #[must_use]
     pub fn unpack(&self, bytes: &[u8]) -> Option<Contact> {
         let mut reader = Reader(bytes);
-        if !reader.is_current() {
+        if !is_current(&mut reader) {
             return None;
         }
         for value in self.definition_marks() {

@@ -2,8 +2,8 @@
 
 use thiserror::Error as ThisError;
 
-use super::quantity::Quantity;
-use super::unit_prefix::{in_unit, short};
+use crate::range::quantity::Quantity;
+use crate::range::unit_prefix::{in_unit, short};
 
 /// What a move can do whose target is beyond the limit of friction.
 const WITHIN_LIMIT: &str = ": the largest tangential force that this move can meet is just below it";
@@ -211,7 +211,7 @@ pub enum UnsupportedMove {
 
 #[cfg(test)]
 mod tests {
-    use super::Error;
+    use crate::Error;
 
     #[test]
     fn a_contact_beyond_the_profile_is_told_where_that_ends() {

@@ -12,11 +12,11 @@ mod derivative;
 mod interval;
 mod settled;
 
-use super::profile::StressRadius;
-use crate::indenter::RingSum;
 use crate::cells::shape::Kink;
 use crate::contact::Contact;
+use crate::indenter::RingSum;
 use crate::numerics::roots::between;
+use crate::profile::StressRadius;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
 use settled::Known;
@@ -28,16 +28,16 @@ const SPARSE_ABOVE: usize = 100;
 /// of itself. The stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
 /// The extrema of the shear stress.
-pub(super) struct Extrema<'a> {
+pub(crate) struct Extrema<'a> {
     /// Their radii, from the centre outward.
-    pub(super) places: Vec<StressRadius>,
+    pub(crate) places: Vec<StressRadius>,
     /// The sum that gave the derivative, if it was asked for.
-    pub(super) sum: Option<RingSum<'a>>,
+    pub(crate) sum: Option<RingSum<'a>>,
 }
 
 impl Contact {
     /// All extrema of the shear stress for 0 < r < a, from the centre outward; `None` if `keep_going` returned false.
-    pub(super) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Extrema<'_>> {
+    pub(crate) fn extrema(&self, keep_going: impl Fn() -> bool) -> Option<Extrema<'_>> {
         let edge = StressRadius::of_point(self.history.edge());
         let bends = self.bends();
         let pieces = self.history.pieces();
@@ -71,12 +71,11 @@ impl Contact {
             let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
             let to = StressRadius::of_point(&outer);
             let beyond = pieces.get(index + 2).map_or(*self.history.edge(), |next| next.inner);
-            let last =
-                if to.square >= edge.square && self.indenter.is_upright(self.history.edge()) {
-                    (EndBehaviour::Logarithm, 0.0)
-                } else {
-                    (EndBehaviour::InverseRoot((beyond.square - outer.square).value()), -bend)
-                };
+            let last = if to.square >= edge.square && self.indenter.is_upright(self.history.edge()) {
+                (EndBehaviour::Logarithm, 0.0)
+            } else {
+                (EndBehaviour::InverseRoot((beyond.square - outer.square).value()), -bend)
+            };
             let begins = knots.partition_point(|knot| knot.at.square <= from.square);
             let ends = knots.partition_point(|knot| knot.at.square < to.square).max(begins);
             let sparse = ends - begins > SPARSE_ABOVE;

@@ -1,10 +1,14 @@
 //! The checks of the ranges of the numbers that the mechanics accepts, and limits that are no quantity of their own.
 
+pub(crate) mod error;
+mod quantity;
+pub(crate) mod unit_prefix;
+
 use std::fmt;
 
-pub use super::quantity::*;
-use super::unit_prefix::short;
-use crate::error::Error;
+use error::Error;
+pub use quantity::*;
+use unit_prefix::short;
 
 /// The smallest coefficient of friction above zero: below it, displacements relative to that of gross slip overflow.
 pub const MIN_POSITIVE_FRICTION: f64 = 1e-9;

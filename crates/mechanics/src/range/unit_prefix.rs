@@ -31,7 +31,7 @@ pub fn unit_prefix(largest: f64) -> (f64, &'static str) {
 }
 
 /// The number in decimal notation, with an exponent only for very large and very small magnitudes.
-pub(super) fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     let magnitude = value.abs();
     let plain = magnitude.to_bits() == 0 || (1e-2..1e5).contains(&magnitude);
     if plain { value.to_string() } else { format!("{value:e}") }

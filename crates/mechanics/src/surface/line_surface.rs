@@ -14,13 +14,13 @@ use std::borrow::Cow;
 use std::f64::consts::FRAC_2_PI;
 use std::sync::Arc;
 
-use super::profile::{LineContact, Ring, StressRadius};
 use crate::contact::Contact;
+use crate::contact::state::State;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{TWENTY_POINTS, integral};
 use crate::numerics::roots::between;
-use crate::shear_stress::{Peak, Residual};
-use crate::state::State;
+use crate::profile::{LineContact, Ring, StressRadius};
+use crate::surface::shear_stress::{Peak, Residual};
 
 /// Samples of the derivative of an eccentric shear stress between two ends of zones.
 const SAMPLES: usize = 48;
@@ -29,15 +29,15 @@ const RESOLUTION: f64 = 1e-15;
 
 /// An end of a piece of the slip history: half-width and centre of the zone inside it, m.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Zone {
-    pub(super) half_width: f64,
-    pub(super) centre: f64,
+pub(crate) struct Zone {
+    pub(crate) half_width: f64,
+    pub(crate) centre: f64,
 }
 
 impl Contact {
     /// This contact, or the round one whose stresses over r are those of a line contact over x.
     /// None where no surface is known.
-    pub(super) fn face(&self) -> Option<Cow<'_, Contact>> {
+    pub(crate) fn face(&self) -> Option<Cow<'_, Contact>> {
         let (Some(line), Some(face)) = (self.indenter.line(), self.indenter.line_face()) else {
             return self.indenter.face().map(|_| Cow::Borrowed(self));
         };
@@ -46,7 +46,7 @@ impl Contact {
     }
 
     /// Centre of the stuck zone of the half-width c, m, in the present contact.
-    pub(super) fn zone_centre(&self, line: &LineContact, half_width: f64) -> f64 {
+    pub(crate) fn zone_centre(&self, line: &LineContact, half_width: f64) -> f64 {
         line.zone_centre(self.normal_force, self.contact_radius(), half_width)
     }
 
@@ -59,12 +59,12 @@ impl Contact {
     }
 
     /// The line contact of a bulk stress that moves its zones.
-    pub(super) fn eccentric(&self) -> Option<&LineContact> {
+    pub(crate) fn eccentric(&self) -> Option<&LineContact> {
         self.indenter.line().filter(|line| line.reach_of_bulk(self.normal_force) != 0.0)
     }
 
     /// The rings of a line contact from the edge inward: inner zone, outer zone and -dw/dy.
-    pub(super) fn zones<'a>(&'a self, line: &'a LineContact) -> impl Iterator<Item = (Zone, Zone, f64)> + 'a {
+    pub(crate) fn zones<'a>(&'a self, line: &'a LineContact) -> impl Iterator<Item = (Zone, Zone, f64)> + 'a {
         let zone = |level: DoubleDouble| {
             let half_width = line.half_width(level.value());
             Zone { half_width, centre: self.zone_centre(line, half_width) }
@@ -77,12 +77,12 @@ impl Contact {
     }
 
     /// What the surface's fields depend on at a place, m: the distance from the axis, or the x of a line contact.
-    pub(super) fn coordinate(&self, [x, y, _]: &[f64; 3]) -> f64 {
+    pub(crate) fn coordinate(&self, [x, y, _]: &[f64; 3]) -> f64 {
         if self.indenter.line().is_some() { *x } else { x.hypot(*y) }
     }
 
     /// The level, m, of the zone whose end is at a coordinate: c with e(c) + c = x, or e(c) - c = x on the other side.
-    pub(super) fn level_at(&self, coordinate: f64) -> f64 {
+    pub(crate) fn level_at(&self, coordinate: f64) -> f64 {
         let Some(line) = self.indenter.line() else { return self.indenter.level(coordinate) };
         let (reach, edge) = (line.reach_of_bulk(self.normal_force), self.contact_radius());
         let bend = if edge > 0.0 { 4.0 * reach / (edge * edge) } else { 0.0 };
@@ -91,7 +91,7 @@ impl Contact {
     }
 
     /// The distances from the middle, m, at which the zone of a level, m, ends.
-    pub(super) fn circles_of(&self, level: f64) -> [f64; 2] {
+    pub(crate) fn circles_of(&self, level: f64) -> [f64; 2] {
         let radius = self.indenter.contact_radius(level);
         let centre = self.indenter.line().map_or(0.0, |line| self.zone_centre(line, radius));
         [radius + centre, radius - centre].map(f64::abs)
@@ -111,7 +111,7 @@ impl Contact {
     }
 
     /// Shear stresses, Pa, of eccentric zones at places x, m.
-    pub(super) fn eccentric_shears(&self, line: &LineContact, places: &[f64]) -> Vec<f64> {
+    pub(crate) fn eccentric_shears(&self, line: &LineContact, places: &[f64]) -> Vec<f64> {
         let (zones, unit) = (self.zones(line).collect::<Vec<_>>(), self.eccentric_unit(line));
         places.iter().map(|&x| unit * Self::eccentric_shear(&zones, x)[0]).collect()
     }
@@ -122,7 +122,7 @@ impl Contact {
 
     /// The extrema of the shear stress of eccentric zones, from the edge at -a to that at a: the derivative is sampled
     /// between the ends of zones, closer to these, and an extremum is where its sign changes.
-    pub(super) fn eccentric_residual(&self, line: &LineContact, keep_going: impl Fn() -> bool) -> Option<Residual> {
+    pub(crate) fn eccentric_residual(&self, line: &LineContact, keep_going: impl Fn() -> bool) -> Option<Residual> {
         let (zones, unit, edge) =
             (self.zones(line).collect::<Vec<_>>(), self.eccentric_unit(line), self.contact_radius());
         let mut ends: Vec<f64> = vec![-edge, edge];
@@ -161,7 +161,7 @@ impl Contact {
     }
 
     /// How much less than at the centre the surface of a line contact has moved over mu, m, at a place x, m.
-    pub(super) fn lag(&self, line: &LineContact, zones: &[(Zone, Zone, f64)], x: f64) -> f64 {
+    pub(crate) fn lag(&self, line: &LineContact, zones: &[(Zone, Zone, f64)], x: f64) -> f64 {
         let flat = line.flat_half_width();
         let ring = |(inner, outer, share): &(Zone, Zone, f64)| {
             if flat > 0.0 {
@@ -175,13 +175,13 @@ impl Contact {
     }
 
     /// w - W at the centre, as stored.
-    pub(super) fn core(&self) -> f64 {
+    pub(crate) fn core(&self) -> f64 {
         self.history.pieces().first().map_or(0.0, |core| core.line.at(DoubleDouble::ZERO).value())
     }
 
-    /// The largest kernel over a ring of this contact's levels: at its inner radius. Zero without a face, where no stress
-    /// errs.
-    pub(super) fn face_kernel(&self, ring: &Ring, at: Option<f64>) -> f64 {
+    /// The largest kernel over a ring of this contact's levels: at its inner radius. Zero without a face, where no
+    /// stress errs.
+    pub(crate) fn face_kernel(&self, ring: &Ring, at: Option<f64>) -> f64 {
         let [inner, outer] = [ring.inner, ring.outer].map(|point| self.indenter.on_face(&point));
         let (Some((face, inner)), Some((_, outer))) = (inner, outer) else { return 0.0 };
         let at = at.map_or(StressRadius::of_point(&inner), StressRadius::new);

@@ -1,7 +1,7 @@
 //! Error estimates of a result: rounding, curved moves, and the interpolation of tables.
 
-use super::contact::Contact;
-use super::normal::mean_pressure;
+use crate::contact::Contact;
+use crate::contact::normal::mean_pressure;
 
 /// A relative slope of g above this is the edge of a punch, whose radius is exact.
 const MAX_STEEPNESS: f64 = 1e4;
@@ -34,7 +34,7 @@ impl Contact {
     /// radius moved by some units in its last place, or by the error of the force times the contact radius.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// contact.apply(&slide(0.001))?;
     /// let estimate = contact.accuracy();
     /// assert!(estimate.force_error < 1e-13 && estimate.stress_error < 1e-13);

@@ -6,14 +6,14 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use super::profile::{Point, StressRadius};
 use crate::contact::Contact;
 use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Point, StressRadius};
 
 /// The surface after a move.
 ///
 /// ```
-#[doc = include_str!("example.txt")]
+#[doc = include_str!("../example.txt")]
 /// contact.apply(&slide(0.001))?;
 /// // The stuck core moves with the indenter; far away the surface stays.
 /// assert!((contact.surface_displacement(0.0) - 0.001).abs() < 1e-17);

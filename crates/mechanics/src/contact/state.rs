@@ -1,10 +1,9 @@
-//! The definition of a contact, its moves and its state.
+//! The definition of a contact, its moves and its state: plain values.
 
 use std::sync::Arc;
 
-use crate::contact::Contact;
+use super::normal::Preload;
 use crate::elasticity::Elasticity;
-use crate::normal::Preload;
 use crate::profile::Profile;
 
 /// The definition of a contact. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
@@ -98,57 +97,4 @@ pub struct State {
     pub elastic_energy: f64,
     /// Number of straight pieces that the slip history consists of.
     pub memory_depth: usize,
-}
-
-impl Contact {
-    /// The state after the last move.
-    ///
-    /// ```
-    #[doc = include_str!("example.txt")]
-    /// contact.apply(&slide(0.00375))?;
-    /// let state = contact.state();
-    /// // The stuck core ends where W = d - g(c): c^2 = R d/2.
-    /// assert!((state.stick_radius - 0.005_f64.sqrt()).abs() < 1e-15);
-    /// assert!(state.force > 0.0 && state.dissipated_energy > 0.0);
-    /// # Ok::<(), Error>(())
-    /// ```
-    #[must_use]
-    pub fn state(&self) -> State {
-        #[cfg(test)]
-        super::cells::call_count::add(|calls| &mut calls.states);
-        let edge = self.history.edge();
-        let scale = self.scale();
-        let (stick_radius, regime) = self.stick();
-        let state = State {
-            displacement: self.displacement.value(),
-            // The -0 of a virgin contact is 0.
-            force: self.force() + 0.0,
-            indentation: edge.level.value(),
-            normal_force: self.normal_force(),
-            contact_radius: self.contact_radius(),
-            stick_radius,
-            stick_centre: None,
-            regime,
-            dissipated_energy: self.dissipated.value(),
-            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
-            memory_depth: self.memory_depth(),
-        };
-        State { stick_centre: self.stick_centre(&state), ..state }
-    }
-
-    fn stick(&self) -> (f64, Regime) {
-        let edge = self.history.edge();
-        if edge.level.value() < 0.0 {
-            return (0.0, Regime::Separated);
-        }
-        if self.friction <= 0.0 {
-            return (0.0, Regime::GrossSlip);
-        }
-        match self.history.slip_from() {
-            None => (self.contact_radius(), Regime::Stick),
-            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
-            Some(start) if start.square < edge.square => (self.indenter.edge_radius(start), Regime::PartialSlip),
-            Some(_) => (self.contact_radius(), Regime::Stick),
-        }
-    }
 }

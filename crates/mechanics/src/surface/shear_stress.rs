@@ -3,8 +3,8 @@
 //! tau(r) = -(G* m/pi) sum over pieces of slope_i int dy/sqrt(X(y)^2 - r^2): each piece adds its slope times its ring's
 //! kernel (eq. 19 of Kraft & Pohrt 2016, by parts over the levels). The search for extrema is in `extrema`.
 
-use super::contact::Contact;
-use super::profile::{Ring, StressRadius};
+use crate::contact::Contact;
+use crate::profile::{Ring, StressRadius};
 
 /// Terms of stresses that are summed between two questions whether to go on.
 const TERMS_PER_QUESTION: usize = 1 << 20;
@@ -37,7 +37,7 @@ pub struct Residual {
 
 impl Residual {
     /// From the shear stress at the centre and the local extrema; `bounded` if it is finite everywhere else.
-    pub(super) fn of(centre: f64, peaks: Vec<Peak>, bounded: bool) -> Residual {
+    pub(crate) fn of(centre: f64, peaks: Vec<Peak>, bounded: bool) -> Residual {
         let sizes = || peaks.iter().map(|peak| peak.shear.abs());
         let max = (bounded && centre.is_finite()).then(|| sizes().fold(centre.abs(), f64::max));
         let (min, mean) = if peaks.is_empty() {
@@ -53,7 +53,7 @@ impl Contact {
     /// Shear stress, Pa, at a radius (m) of at least zero, or at the x of a line contact; zero outside the contact.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// contact.apply(&slide(1.0))?;
     /// // Gross slip forwards: mu times the pressure, positive.
     /// assert!((contact.shear(0.03) / (0.5 * contact.pressure(0.03)) - 1.0).abs() < 1e-14);
@@ -70,7 +70,7 @@ impl Contact {
     /// [`Contact::shear`] at each of `radii`, m: faster than one by one.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// contact.apply(&slide(0.001))?;
     /// assert_eq!(contact.shears(&[0.05, 0.2]), [contact.shear(0.05), 0.0]);
     /// # Ok::<(), Error>(())
@@ -88,7 +88,7 @@ impl Contact {
     }
 
     /// [`Contact::shears`] at radii whose squares have all their digits.
-    pub(super) fn shears_at(&self, radii: &[StressRadius]) -> Vec<f64> {
+    pub(crate) fn shears_at(&self, radii: &[StressRadius]) -> Vec<f64> {
         let rings: Vec<_> = self.shear_rings().rev().collect();
         self.shears_of(self.indenter.kernel_sums_at(&rings, radii))
     }
@@ -100,7 +100,7 @@ impl Contact {
     }
 
     /// The rings of the slip history from the edge inward, each with its -dw/dy.
-    pub(super) fn shear_rings(&self) -> impl DoubleEndedIterator<Item = (Ring, f64)> {
+    pub(crate) fn shear_rings(&self) -> impl DoubleEndedIterator<Item = (Ring, f64)> {
         self.history.rings().map(|(ring, line)| (ring, -line.slope.value()))
     }
 
@@ -109,7 +109,7 @@ impl Contact {
         self.elasticity.g_star() * self.scale() / std::f64::consts::PI
     }
 
-    pub(super) fn shear_at(&self, at: &StressRadius) -> f64 {
+    pub(crate) fn shear_at(&self, at: &StressRadius) -> f64 {
         if self.indenter.rim_radius().is_some() {
             // At a vertical edge the rings together have a sign, and each is infinite.
             return self.shears_at(&[*at])[0];
@@ -135,7 +135,7 @@ impl Contact {
     /// every profile (`tests/physics/extrema.rs`) have found none that was.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// contact.apply(&slide(1.0))?;
     /// contact.apply(&Move { tangential: Some(Tangential::Force(0.0)), ..Move::default() })?;
     /// // Without a force the core is still loaded forwards, and a ring outside it backwards.
@@ -153,7 +153,7 @@ impl Contact {
     /// `None` if it returned false.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// assert!(contact.residual_while(|| false).is_none());
     /// # Ok::<(), Error>(())
     /// ```

@@ -5,21 +5,25 @@
 
 use std::cmp::Ordering;
 
-use super::profile::{Point, Ring, StressRadius};
-use super::range::Quantity;
-use super::unit_prefix::short;
 use crate::cells::shape::Reach;
 use crate::elasticity::Elasticity;
-use crate::error::Error;
-use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::roots::{largest_of, within};
 use crate::indenter::Indenter;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::roots::{largest, within};
 use crate::profile::Profile;
+use crate::profile::{Point, Ring, StressRadius};
+use crate::range::Quantity;
+use crate::range::error::Error;
+use crate::range::unit_prefix::short;
 
 /// Radii of the first scan for the largest pressure.
 const PRESSURE_SCAN: usize = 64;
 /// Levels of that scan.
 const LEVEL_SCAN: usize = 32;
+/// The most kinks of a profile that are among its places.
+const KINKS: usize = 64;
+/// The highest places beside which a maximum is searched for.
+const SEARCHED: usize = 3;
 
 /// The normal load at the start. Zero is a contact just touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,7 +60,7 @@ pub struct ContactSummary {
 }
 
 /// ```
-#[doc = include_str!("example.txt")]
+#[doc = include_str!("../example.txt")]
 /// let summary = contact.summary();
 /// assert_eq!(Some(summary.unit_pressure()), summary.max_pressure);
 /// assert_eq!(Some(summary.unit_shear()), summary.max_pressure.map(|pressure| 0.5 * pressure));
@@ -64,7 +68,7 @@ pub struct ContactSummary {
 /// ```
 impl ContactSummary {
     /// The summary of an indentation and its normal force, N.
-    pub(super) fn of(
+    pub(crate) fn of(
         indenter: &Indenter,
         elasticity: &Elasticity,
         friction: f64,
@@ -110,7 +114,7 @@ impl Profile {
     /// [`Error::Interrupted`] once `keep_going` has returned false.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// assert!(setup.profile.prepare_for(&setup.preload, &setup.elasticity, &|| true).is_ok());
     /// # Ok::<(), Error>(())
     /// ```
@@ -131,17 +135,17 @@ impl Profile {
 }
 
 /// F_N/(pi a^2), Pa; not finite without a contact.
-pub(super) fn mean_pressure(normal_force: f64, contact_radius: f64) -> f64 {
+pub(crate) fn mean_pressure(normal_force: f64, contact_radius: f64) -> f64 {
     normal_force / (std::f64::consts::PI * contact_radius * contact_radius)
 }
 
 /// The ring from the centre to `edge`: the whole contact.
-pub(super) fn whole(indenter: &Indenter, edge: &Point) -> Ring {
+pub(crate) fn whole(indenter: &Indenter, edge: &Point) -> Ring {
     Ring::between(indenter.point(DoubleDouble::ZERO), *edge)
 }
 
 /// int X dy, m^2, over a ring: its share of F_N/(2 E*).
-pub(super) fn load(indenter: &Indenter, ring: &Ring) -> f64 {
+pub(crate) fn load(indenter: &Indenter, ring: &Ring) -> f64 {
     if ring.depth <= 0.0 {
         return 0.0;
     }
@@ -149,12 +153,12 @@ pub(super) fn load(indenter: &Indenter, ring: &Ring) -> f64 {
 }
 
 /// Normal force, N, of the contact that ends at `edge`.
-pub(super) fn force(indenter: &Indenter, elasticity: &Elasticity, edge: &Point) -> f64 {
+pub(crate) fn force(indenter: &Indenter, elasticity: &Elasticity, edge: &Point) -> f64 {
     2.0 * elasticity.e_star() * load(indenter, &whole(indenter, edge))
 }
 
 /// Indentation, m, that carries `normal_force`, N.
-pub(super) fn indentation(indenter: &Indenter, elasticity: &Elasticity, normal_force: f64) -> f64 {
+pub(crate) fn indentation(indenter: &Indenter, elasticity: &Elasticity, normal_force: f64) -> f64 {
     indenter.indentation_for(normal_force / (2.0 * elasticity.e_star()))
 }
 
@@ -162,7 +166,7 @@ pub(super) fn indentation(indenter: &Indenter, elasticity: &Elasticity, normal_f
 ///
 /// # Errors
 /// [`Error::OutOfRange`] for a radius that is not that of one load alone: below a flat end, or from a vertical edge on.
-pub(super) fn indentation_at(indenter: &Indenter, radius: f64) -> Result<f64, Error> {
+pub(crate) fn indentation_at(indenter: &Indenter, radius: f64) -> Result<f64, Error> {
     let allowed = |allowed: String| Error::OutOfRange { quantity: Quantity::ContactRadius, value: radius, allowed };
     indenter.check_radius(radius)?;
     let flat = indenter.contact_radius(0.0);
@@ -181,7 +185,7 @@ pub(super) fn indentation_at(indenter: &Indenter, radius: f64) -> Result<f64, Er
 }
 
 /// Pressure, Pa, at radius r; zero outside the contact.
-pub(super) fn pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Point, at: &StressRadius) -> f64 {
+pub(crate) fn pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Point, at: &StressRadius) -> f64 {
     let ring = whole(indenter, edge);
     if ring.depth <= 0.0 {
         return 0.0;
@@ -190,7 +194,7 @@ pub(super) fn pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Poin
 }
 
 /// [`pressure`] at each of `radii`, m: faster than one by one.
-pub(super) fn pressures(indenter: &Indenter, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
+pub(crate) fn pressures(indenter: &Indenter, elasticity: &Elasticity, edge: &Point, radii: &[f64]) -> Vec<f64> {
     let ring = whole(indenter, edge);
     if ring.depth <= 0.0 {
         return vec![0.0; radii.len()];
@@ -200,7 +204,7 @@ pub(super) fn pressures(indenter: &Indenter, elasticity: &Elasticity, edge: &Poi
 }
 
 /// The largest pressure, Pa; `None` where it is infinite or not known.
-pub(super) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
+pub(crate) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &Point) -> Option<f64> {
     let (face, edge) = indenter.on_face(edge)?;
     let at = |at: &StressRadius| pressure(face, elasticity, &edge, at);
     let mut spikes = face.singular().filter(|spike| spike.square <= edge.square);
@@ -219,7 +223,7 @@ pub(super) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &
     let mut squares: Vec<DoubleDouble> = (0..PRESSURE_SCAN)
         .map(|index| DoubleDouble::square_of(radius(index)))
         .chain((0..LEVEL_SCAN).map(|index| face.point(level(index)).square))
-        .chain(highest_kink(face, elasticity, &edge))
+        .chain(highest_kinks(face, elasticity, &edge))
         .collect();
     squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
     squares.push(edge.square);
@@ -227,24 +231,36 @@ pub(super) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &
         let place = StressRadius { radius: square.value().sqrt(), square };
         if square < edge.square { at(&place) } else { 0.0 }
     };
-    Some(largest_of(&squares, 1, 1e-7, inside).1)
+    // Kinks are among the places, so that between two of these the pressure has one maximum; where it is infinitely
+    // steep at a place, the maximum may be beside a lower one than the highest.
+    let mut order: Vec<(usize, f64)> = squares.iter().map(|square| inside(*square)).enumerate().collect();
+    order.sort_by(|one, other| other.1.total_cmp(&one.1));
+    let mut most = order[0].1;
+    for index in order.into_iter().take(SEARCHED).flat_map(|(index, _)| [index.checked_sub(1), Some(index)]).flatten() {
+        if let Some(&high) = squares.get(index + 1) {
+            let (low, width) = (squares[index], high - squares[index]);
+            most = most.max(largest([0.0, 1.0], 1e-7, |share| inside(low + width * share)).1);
+        }
+    }
+    Some(most)
 }
 
-/// The square, m^2, of the kink in the contact at which the pressure is highest: beside it its derivative is infinite,
-/// so that no even radii find a maximum there.
-fn highest_kink(face: &Indenter, elasticity: &Elasticity, edge: &Point) -> Option<DoubleDouble> {
+/// The squares, m^2, of the kinks in the contact at which the pressure is highest: at each its derivative is infinite,
+/// so that even radii miss a maximum there.
+fn highest_kinks(face: &Indenter, elasticity: &Elasticity, edge: &Point) -> impl Iterator<Item = DoubleDouble> {
     let inside = face.kinks().iter().map(|kink| kink.at).take_while(|at| at.square < edge.square);
     let places: Vec<StressRadius> = inside.collect();
     let pressures = face.kernel_sums_at(&[(whole(face, edge), elasticity.e_star())], &places);
-    let highest = places.iter().zip(pressures).max_by(|one, other| one.1.total_cmp(&other.1));
-    highest.map(|(at, _)| at.square)
+    let mut kinks: Vec<(DoubleDouble, f64)> = places.into_iter().map(|at| at.square).zip(pressures).collect();
+    kinks.sort_by(|one, other| other.1.total_cmp(&one.1));
+    kinks.into_iter().take(KINKS).map(|(square, _)| square)
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.
 ///
 /// The load is concave in the depth from the outside and convex from the inside, so Newton's step from the side of the
 /// smaller slope never passes the root: it converges from any start, even where X vanishes and the slope with it.
-pub(super) fn depth_for(indenter: &Indenter, ring: &Ring, upward: bool, wanted: f64) -> f64 {
+pub(crate) fn depth_for(indenter: &Indenter, ring: &Ring, upward: bool, wanted: f64) -> f64 {
     let part = |depth: f64| {
         let depth = DoubleDouble::from(depth);
         if upward {

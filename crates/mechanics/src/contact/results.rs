@@ -1,0 +1,234 @@
+//! What a contact is asked in its present state, but for searches: forces, radii, pressures, the state as values.
+
+use super::Contact;
+use super::normal::{self, ContactSummary};
+use super::state::{Regime, State};
+use crate::elasticity::Elasticity;
+use crate::indenter::Indenter;
+use crate::numerics::double_double::DoubleDouble;
+use crate::profile::{Profile, StressRadius};
+
+/// The results for the present state, each at once: a straight move has no error of its path.
+///
+/// ```
+#[doc = include_str!("../example.txt")]
+/// // Hertz: a^2 = R d, F_N = 4/3 E* a d and p(0) = 2 E* a/(pi R).
+/// assert!((contact.contact_radius().powi(2) - 0.01).abs() < 1e-15);
+/// assert!((contact.normal_force() / (4.0 / 3.0 * 3e6 * 0.1 * 0.01) - 1.0).abs() < 1e-14);
+/// assert!((contact.pressure(0.0) / (0.6e6 / std::f64::consts::PI) - 1.0).abs() < 1e-14);
+/// assert_eq!(contact.pressures(&[0.11, 0.05]), [0.0, contact.pressure(0.05)]);
+/// assert!((contact.gross_slip_displacement() - 0.0075).abs() < 1e-15);
+/// assert!((contact.summary().gross_slip_force - 2000.0).abs() < 1e-9);
+///
+/// contact.apply(&slide(0.001))?;
+/// // A stuck core and a ring that has slipped.
+/// assert_eq!((contact.displacement(), contact.memory_depth(), contact.path_error()), (0.001, 2, 0.0));
+/// assert!(contact.memory_bytes() > size_of::<Contact>());
+/// contact.apply(&slide(-1.0))?;
+/// // Gross slip backwards: -mu F_N.
+/// assert!((contact.force() + 2000.0).abs() < 1e-9);
+///
+/// contact.apply(&Move { normal: Some(Normal::Indentation(0.02)), ..Move::default() })?;
+/// assert_eq!((contact.initial_summary().indentation, contact.summary().indentation), (0.01, 0.02));
+/// contact.apply(&Move { normal: Some(Normal::Indentation(-0.001)), ..Move::default() })?;
+/// assert_eq!((contact.indentation(), contact.contact_radius()), (-0.001, 0.0));
+/// # Ok::<(), Error>(())
+/// ```
+impl Contact {
+    /// W = U/m, m.
+    pub(crate) fn scaled(&self, displacement: DoubleDouble) -> DoubleDouble {
+        displacement * self.inverse_scale
+    }
+
+    /// U = m W, m.
+    pub(crate) fn unscaled(&self, position: DoubleDouble) -> DoubleDouble {
+        if self.friction > 0.0 { position.over(self.inverse_scale) } else { DoubleDouble::ZERO }
+    }
+
+    /// Normal force, N, at an indentation, m.
+    pub(crate) fn normal_force_at(&self, indentation: DoubleDouble) -> f64 {
+        if indentation.value() <= 0.0 {
+            return 0.0;
+        }
+        normal::force(&self.indenter, &self.elasticity, &self.indenter.point(indentation))
+    }
+
+    /// m = mu E*/G*: displacement of the surface where it slips, over its normal displacement.
+    pub(crate) fn scale(&self) -> f64 {
+        self.friction * self.elasticity.e_star() / self.elasticity.g_star()
+    }
+
+    /// Tangential force, N.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
+    }
+
+    /// Indentation, m, that carries a normal force, N.
+    pub(crate) fn indentation_for(&self, normal_force: f64) -> DoubleDouble {
+        DoubleDouble::from(normal::indentation(&self.indenter, &self.elasticity, normal_force))
+    }
+
+    /// Normal force, N; to the bit the prescribed one, where one was prescribed.
+    #[must_use]
+    pub fn normal_force(&self) -> f64 {
+        self.normal_force
+    }
+
+    /// Pressure, Pa, at a radius (m) of at least zero, or at the x of a line contact; zero outside the contact,
+    /// infinite at a sharp edge.
+    #[must_use]
+    pub fn pressure(&self, radius: f64) -> f64 {
+        let at = StressRadius::new(radius.abs());
+        let face = self.indenter.on_face(self.history.edge());
+        face.map_or(f64::NAN, |(face, edge)| normal::pressure(face, &self.elasticity, &edge, &at))
+    }
+
+    /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
+    #[must_use]
+    pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
+        let Some((face, edge)) = self.indenter.on_face(self.history.edge()) else { return vec![f64::NAN; radii.len()] };
+        let distances: Vec<f64> = radii.iter().map(|radius| radius.abs()).collect();
+        normal::pressures(face, &self.elasticity, &edge, &distances)
+    }
+
+    /// The shape of the indenter.
+    #[must_use]
+    pub fn profile(&self) -> &Profile {
+        self.indenter.profile()
+    }
+
+    /// That shape, resolved once.
+    #[must_use]
+    pub fn indenter(&self) -> &Indenter {
+        &self.indenter
+    }
+
+    /// Coulomb's coefficient of friction mu.
+    #[must_use]
+    pub fn friction(&self) -> f64 {
+        self.friction
+    }
+
+    /// The elastic constants.
+    #[must_use]
+    pub fn elasticity(&self) -> Elasticity {
+        self.elasticity
+    }
+
+    /// The error that curved moves have left in the tangential force, relative to mu F_N: an estimate from above.
+    #[must_use]
+    pub fn path_error(&self) -> f64 {
+        self.path_error
+    }
+
+    /// Contact radius a, m; half-width of a line contact; of a profile without a stress field as
+    /// [`Contact::stiffness_radius`].
+    #[must_use]
+    pub fn contact_radius(&self) -> f64 {
+        self.indenter.edge_radius(self.history.edge())
+    }
+
+    /// F_N'/(2 E*), m, the contact radius of the round contact that is as stiff: a where the contact is round.
+    #[must_use]
+    pub fn stiffness_radius(&self) -> f64 {
+        self.history.edge().radius
+    }
+
+    /// Tangential displacement U of the indenter, m.
+    #[must_use]
+    pub fn displacement(&self) -> f64 {
+        self.displacement.value()
+    }
+
+    /// Indentation d, m; below zero a gap.
+    #[must_use]
+    pub fn indentation(&self) -> f64 {
+        self.history.edge().level.value()
+    }
+
+    /// Displacement of gross slip on first loading, m, at the present load.
+    #[must_use]
+    pub fn gross_slip_displacement(&self) -> f64 {
+        self.scale() * self.indentation().max(0.0)
+    }
+
+    /// Number of straight pieces that the slip history consists of.
+    #[must_use]
+    pub fn memory_depth(&self) -> usize {
+        self.history.pieces().len()
+    }
+
+    /// Bytes of RAM that the contact takes, its slip history included.
+    #[must_use]
+    pub fn memory_bytes(&self) -> usize {
+        size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes()
+    }
+
+    /// The summary at the present normal load.
+    #[must_use]
+    pub fn summary(&self) -> ContactSummary {
+        ContactSummary::of(&self.indenter, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
+    }
+
+    /// The summary at the preload of the definition.
+    #[must_use]
+    pub fn initial_summary(&self) -> ContactSummary {
+        let (indentation, normal_force) = self.preload;
+        let edge = self.indenter.point(indentation);
+        ContactSummary::of(&self.indenter, &self.elasticity, self.friction, &edge, normal_force)
+    }
+}
+
+impl Contact {
+    /// The state after the last move.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// contact.apply(&slide(0.00375))?;
+    /// let state = contact.state();
+    /// // The stuck core ends where W = d - g(c): c^2 = R d/2.
+    /// assert!((state.stick_radius - 0.005_f64.sqrt()).abs() < 1e-15);
+    /// assert!(state.force > 0.0 && state.dissipated_energy > 0.0);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn state(&self) -> State {
+        #[cfg(test)]
+        crate::cells::call_count::add(|calls| &mut calls.states);
+        let edge = self.history.edge();
+        let scale = self.scale();
+        let (stick_radius, regime) = self.stick();
+        let state = State {
+            displacement: self.displacement.value(),
+            // The -0 of a virgin contact is 0.
+            force: self.force() + 0.0,
+            indentation: edge.level.value(),
+            normal_force: self.normal_force(),
+            contact_radius: self.contact_radius(),
+            stick_radius,
+            stick_centre: None,
+            regime,
+            dissipated_energy: self.dissipated.value(),
+            elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
+            memory_depth: self.memory_depth(),
+        };
+        State { stick_centre: self.stick_centre(&state), ..state }
+    }
+
+    fn stick(&self) -> (f64, Regime) {
+        let edge = self.history.edge();
+        if edge.level.value() < 0.0 {
+            return (0.0, Regime::Separated);
+        }
+        if self.friction <= 0.0 {
+            return (0.0, Regime::GrossSlip);
+        }
+        match self.history.slip_from() {
+            None => (self.contact_radius(), Regime::Stick),
+            Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
+            Some(start) if start.square < edge.square => (self.indenter.edge_radius(start), Regime::PartialSlip),
+            Some(_) => (self.contact_radius(), Regime::Stick),
+        }
+    }
+}
