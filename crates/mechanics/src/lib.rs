@@ -53,8 +53,7 @@
 //! | [`cycle`], [`closed_cycles`] | what does a contact do in a steady cycle, and which cycles has a path closed? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
 //! | `surface` | what does the surface carry, how far does it move and slip, where are the extrema? |
-//! | `moves`, `force_control` | how does a contact move, and which displacement gives a force? |
-//! | `curved_move`, `curved_path`, `curve_panel` | how is a move followed that is straight in a force? |
+//! | `path` | how does a contact move, which displacement gives a force, how are curved moves followed? |
 //! | `contact` | what is a contact made of, what are its state, pressure, error and bytes? |
 //! | `slip_history` | what is left of the path under a limit law, and what work does a move dissipate? |
 //! | [`Indenter`] | what does a contact ask of a profile, resolved once? |
@@ -67,16 +66,12 @@
 mod cells;
 pub mod closed_cycles;
 mod contact;
-mod curve_panel;
-mod curved_move;
-mod curved_path;
 pub mod cycle;
 pub mod elasticity;
 pub mod fatigue;
-mod force_control;
 mod indenter;
-mod moves;
 mod numerics;
+mod path;
 pub mod profile;
 pub mod protocol;
 pub mod range;
@@ -99,10 +94,10 @@ pub use contact::accuracy::ErrorEstimate;
 pub use contact::normal::{ContactSummary, Preload};
 pub use contact::packed::ENGINE;
 pub use contact::state::{Move, Normal, Regime, Setup, State, Tangential};
-pub use curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use elasticity::{Body, Elasticity};
 pub use indenter::Indenter;
 pub use numerics::double_double::DoubleDouble;
+pub use path::curved_move::{DEFAULT_TOLERANCE, MAX_CHORDS};
 pub use profile::{Profile, Sphere};
 pub use range::error::{CurveFault, Error, TableFault, UnsupportedMove};
 pub use range::unit_prefix::{in_unit, unit_prefix};

@@ -32,10 +32,10 @@ use std::f64::consts::PI;
 use crate::contact::Contact;
 use crate::contact::normal::{depth_for, load, whole};
 use crate::contact::state::Regime;
-use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWENTY_POINTS;
 use crate::numerics::roots::within;
+use crate::path::curved_path::PathPoint;
 use crate::profile::{Moments, Ring};
 use crate::range::error::Error;
 

@@ -2,9 +2,9 @@
 
 use crate::contact::Contact;
 use crate::contact::state::{Move, Normal, Tangential};
-use crate::curved_move::DEFAULT_TOLERANCE;
-use crate::curved_path::PathPoint;
 use crate::numerics::double_double::DoubleDouble;
+use crate::path::curved_move::DEFAULT_TOLERANCE;
+use crate::path::curved_path::PathPoint;
 use crate::range::Quantity;
 use crate::range::error::Error;
 

@@ -13,9 +13,9 @@
 //!   the kernel up to c falls: v only grows outward, so each R_i outweighs the next, and the first of them has the sign
 //!   of s_j D.
 //!
-//! Whether a kernel falls is known from [`Falls::least`](super::super::cells::falls::Falls), once for all r of an
+//! Whether a kernel falls is known from [`Falls::least`](crate::cells::falls::Falls), once for all r of an
 //! interval. Where it may not, but g'/x rises ever less with x^2
-//! ([`Falls::concavely`](super::super::cells::falls::Falls)), D grows with r. Then the derivative over that of the
+//! ([`Falls::concavely`](crate::cells::falls::Falls)), D grows with r. Then the derivative over that of the
 //! factor grows away from zero too, and changes its sign once at most, in the same two cases: dD/d(r^2) falls as c
 //! grows, as D does, by d^2 D/(d(r^2) dc) = -3 g'(c)/(4 v^5), and of the dR_i/d(r^2) = int 3 dy/(4 v^5) each outweighs
 //! the next.

@@ -9,10 +9,10 @@
 use std::ops::{Add, Mul, Sub};
 
 use crate::contact::Contact;
-use crate::curve_panel::PathPanel;
-use crate::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, turning};
+use crate::path::curve_panel::PathPanel;
+use crate::path::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::range::error::Error;
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
@@ -61,7 +61,7 @@ fn between<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>>(f
 impl Contact {
     /// Follows a path while `keep_going` returns true; `tolerance` is relative to mu F_N. `visit` is told the part of
     /// the path that is done, from 0 to 1, and the end of each chord.
-    pub(super) fn follow(
+    pub(crate) fn follow(
         &mut self,
         path: &CurvedMove,
         tolerance: f64,
@@ -174,7 +174,7 @@ impl Contact {
         }
     }
 
-    pub(super) fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
+    pub(crate) fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
         let normal_force = self.normal_force_on(path, part);
         let indentation = match path.normal {
             NormalPath::Indentation { from, to } => between(from, to, part),
@@ -192,7 +192,7 @@ impl Contact {
     }
 
     /// Scaled displacement from here to a point of the path, m.
-    pub(super) fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
+    pub(crate) fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
         self.scaled(point.displacement) - self.history.position()
     }
 }

@@ -9,9 +9,9 @@
 //!   c = (dF_x/dd)/(2 G* m), J = int h/x^2 dx and K = int (D - h)/x^2 dx; J = D/x0 - D/x1 - K.
 
 use crate::contact::Contact;
-use crate::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{self, EIGHT_POINTS, TWENTY_POINTS};
+use crate::path::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::profile::Ring;
 
 /// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.
@@ -22,20 +22,20 @@ const RATE_ROUND_OFF: f64 = 16.0 * f64::EPSILON;
 const BEGINNING: f64 = 1e-3;
 
 /// A stretch of a curved path, from the present state on.
-pub(super) struct PathPanel {
+pub(crate) struct PathPanel {
     /// Where the two chords meet.
-    pub(super) elbow: PathPoint,
-    pub(super) end: PathPoint,
+    pub(crate) elbow: PathPoint,
+    pub(crate) end: PathPoint,
     /// Whether all of it is without slip, so that what it touches keeps a part of the curve.
-    pub(super) sticks: bool,
+    pub(crate) sticks: bool,
     /// The sign of slip, and whether slip towards it goes on at the start, if it does so in a part alone.
-    pub(super) turn: Option<(f64, bool)>,
+    pub(crate) turn: Option<(f64, bool)>,
     /// A bound of int (error of w) dx up to anywhere within the pair of chords, m^2.
-    pub(super) within: f64,
+    pub(crate) within: f64,
     /// Error of that integral over the whole pair, m^2.
-    pub(super) quadrature: f64,
+    pub(crate) quadrature: f64,
     /// Error of the slope of w over y, times the kernel of the newly touched ring at its inner radius.
-    pub(super) kernel: f64,
+    pub(crate) kernel: f64,
 }
 
 /// An integral by two rules: its value, and their difference.
@@ -70,7 +70,7 @@ const BESIDE: f64 = 0.999;
 impl Contact {
     /// The displacement, scaled, m, at which a contact that does not slip has the tangential force `target`, N, on a
     /// path straight in (F_x, d); `None` where it slips, or on another path.
-    pub(super) fn stuck_position(
+    pub(crate) fn stuck_position(
         &self,
         path: &CurvedMove,
         indentation: DoubleDouble,
@@ -92,7 +92,7 @@ impl Contact {
     }
 
     /// The stretch of a path from here, at `done`, to `next`.
-    pub(super) fn panel(&self, path: &CurvedMove, done: f64, next: f64) -> PathPanel {
+    pub(crate) fn panel(&self, path: &CurvedMove, done: f64, next: f64) -> PathPanel {
         let end = self.point_on(path, next);
         let start = self.history.edge().level;
         let rise = end.indentation - start;

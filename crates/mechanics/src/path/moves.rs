@@ -3,9 +3,9 @@
 
 use crate::contact::Contact;
 use crate::contact::state::{Move, Normal, Tangential};
-use crate::curved_move::DEFAULT_TOLERANCE;
-use crate::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::numerics::double_double::DoubleDouble;
+use crate::path::curved_move::DEFAULT_TOLERANCE;
+use crate::path::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
 use crate::range;
 use crate::range::error::Error;
 use crate::slip_history::limit::Coulomb;
@@ -17,7 +17,7 @@ impl Contact {
     /// As [`Contact::apply_within`].
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// contact.apply(&slide(0.00375))?;
     /// // Half-way to gross slip (Cattaneo 1938): F = mu F_N (1 - (1 - U/u_max)^(3/2)).
     /// assert!((contact.force() - 2000.0 * (1.0 - 0.5_f64.powf(1.5))).abs() < 1e-9);
@@ -36,7 +36,7 @@ impl Contact {
     /// tangential force that friction cannot hold all the way.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// let force = Some(Tangential::Force(1000.0));
     /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
     /// contact.apply_within(&oblique, 1e-6)?;
@@ -56,7 +56,7 @@ impl Contact {
     /// As [`Contact::apply_within`], and [`Error::Interrupted`].
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// let force = Some(Tangential::Force(1000.0));
     /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
     /// assert_eq!(contact.apply_while(&oblique, 1e-6, &|| false), Err(Error::Interrupted));
@@ -69,7 +69,7 @@ impl Contact {
 
     /// As [`Contact::apply_while`]; `visit` is told the part of the move that is done, from 0 to 1, and the contact at
     /// the end of each of the chords that the move is made of, of which a straight one has one.
-    pub(super) fn apply_visited(
+    pub(crate) fn apply_visited(
         &mut self,
         step: &Move,
         tolerance: f64,
@@ -123,7 +123,7 @@ impl Contact {
     }
 
     /// Whether the profile has a contact of this indentation, m.
-    pub(super) fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
+    pub(crate) fn check_indentation(&self, indentation: f64) -> Result<(), Error> {
         range::INDENTATION.check(indentation)?;
         if indentation > 0.0 {
             range::CONTACT_RADIUS.check(self.indenter.check_radius(self.indenter.contact_radius(indentation))?)?;
@@ -153,7 +153,7 @@ impl Contact {
     /// quantities: a sequence of such moves with rising fractions follows the same line.
     ///
     /// ```
-    #[doc = include_str!("example.txt")]
+    #[doc = include_str!("../example.txt")]
     /// let half = contact.partial_move(&slide(0.002), 0.5);
     /// assert_eq!(half.tangential, Some(Tangential::Displacement(0.001)));
     /// # Ok::<(), Error>(())
@@ -175,7 +175,7 @@ impl Contact {
     }
 
     /// The straight move in displacement and indentation that every other move is made of.
-    pub(super) fn advance(&mut self, point: &PathPoint) {
+    pub(crate) fn advance(&mut self, point: &PathPoint) {
         self.displacement = point.displacement;
         self.normal_force = point.normal_force;
         let scaled_work =

@@ -27,7 +27,7 @@ impl Contact {
     /// The scaled displacement W, m, at which the contact carries the tangential force `target`, N, once it has moved
     /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the
     /// target.
-    pub(super) fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
+    pub(crate) fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
         let wanted = target / self.force_unit();
         // Just below the limit the low digits of the product decide how much still sticks.
         let room = (DoubleDouble::from(normal_force) * self.friction - DoubleDouble::from(target.abs())).value()
@@ -59,7 +59,7 @@ impl Contact {
     }
 
     /// 2 G* m: tangential force, N, over int_0^a w dx, m^2.
-    pub(super) fn force_unit(&self) -> f64 {
+    pub(crate) fn force_unit(&self) -> f64 {
         2.0 * self.elasticity.g_star() * self.scale()
     }
 

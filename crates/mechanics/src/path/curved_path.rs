@@ -5,39 +5,39 @@ use crate::numerics::double_double::DoubleDouble;
 
 /// How the tangential target is reached: straight from one value to the other.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum TangentialPath {
+pub(crate) enum TangentialPath {
     Displacement { from: DoubleDouble, to: DoubleDouble },
     Force { from: f64, to: f64 },
 }
 
 /// How the normal target is reached.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum NormalPath {
+pub(crate) enum NormalPath {
     Indentation { from: DoubleDouble, to: DoubleDouble },
     Force { from: f64, to: f64 },
 }
 
 /// A path straight in two quantities, over a parameter from 0 to 1.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CurvedMove {
-    pub(super) tangential: TangentialPath,
-    pub(super) normal: NormalPath,
+pub(crate) struct CurvedMove {
+    pub(crate) tangential: TangentialPath,
+    pub(crate) normal: NormalPath,
 }
 
 /// A point of the curve.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct PathPoint {
+pub(crate) struct PathPoint {
     /// d, m.
-    pub(super) indentation: DoubleDouble,
+    pub(crate) indentation: DoubleDouble,
     /// F_N, N, that belongs to it.
-    pub(super) normal_force: f64,
+    pub(crate) normal_force: f64,
     /// U, m.
-    pub(super) displacement: DoubleDouble,
+    pub(crate) displacement: DoubleDouble,
 }
 
 impl Contact {
     /// Where the contact is.
-    pub(super) fn path_point(&self) -> PathPoint {
+    pub(crate) fn path_point(&self) -> PathPoint {
         let indentation = self.history.edge().level;
         PathPoint { indentation, normal_force: self.normal_force, displacement: self.displacement }
     }
