@@ -51,6 +51,7 @@ pub mod stress;
 pub mod subsurface;
 pub mod sweep;
 pub mod wear;
+mod whole;
 
 use limits::{Limited as _, LimitsOfSchemas};
 

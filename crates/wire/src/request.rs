@@ -20,7 +20,9 @@ macro_rules! requests {
         $(#[doc = $about])*
         #[serde_with::skip_serializing_none]
         #[serde_with::apply(
-            Option => #[serde(default, deserialize_with = "crate::request::not_null")] #[schema(nullable = false)]
+            Option => #[serde(default, deserialize_with = "crate::request::not_null")] #[schema(nullable = false)],
+            usize => #[serde(deserialize_with = "crate::whole::read")],
+            u64 => #[serde(deserialize_with = "crate::whole::read")],
         )]
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize, utoipa::ToSchema $($(, $Trait)+)?)]
         #[serde(deny_unknown_fields, remote = "Self")]
@@ -125,5 +127,5 @@ pub(crate) const fn name_in_json(member: &'static str) -> &'static str {
 
 /// For members that may be left out but, once named, must have a value: some clients write NaN as `null`.
 pub(crate) fn not_null<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    T::deserialize(deserializer).map(Some)
+    crate::whole::read(deserializer).map(Some)
 }
