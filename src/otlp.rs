@@ -53,7 +53,7 @@ const QUEUE: usize = 8_192;
 const BATCH: usize = 512;
 /// How long spans wait to be sent together.
 const PERIOD: Duration = Duration::from_secs(1);
-/// How long a collector may take for a batch, and for all that waits at the end.
+/// How long a collector may take for a batch.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Bytes of an answer of a collector that are read.
 const ANSWER: usize = 64 * 1024;
@@ -110,11 +110,11 @@ fn is_ours(metadata: &Metadata<'_>) -> bool {
 }
 
 impl Exporter {
-    /// Sends what waits, as long as that takes no longer than a collector may. It blocks the thread, which must be none
+    /// Sends what waits, as long as that takes no longer than `patience`. It blocks the thread, which must be none
     /// of the runtime.
-    pub fn finish(self) {
+    pub fn finish(self, patience: Duration) {
         // An unreachable collector has been logged already.
-        if let Err(OTelSdkError::Timeout(_)) = self.0.shutdown_with_timeout(PATIENCE) {
+        if let Err(OTelSdkError::Timeout(_)) = self.0.shutdown_with_timeout(patience) {
             tracing::warn!("the last traces were not sent in time");
         }
     }

@@ -5,7 +5,7 @@
 
 mod entry;
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -87,7 +87,10 @@ impl Holder {
 /// All known keys, by their hashes. The time of a lookup depends on hashes alone, which are no secrets: nobody finds
 /// the key to one.
 #[derive(Debug, Default)]
-pub struct Keys(HashMap<Hash, Arc<Holder>>);
+pub struct Keys {
+    holders: HashMap<Hash, Arc<Holder>>,
+    names: HashSet<Arc<str>>,
+}
 
 impl Keys {
     /// Adds the keys of a text: entries `name:roles:tenant:sha256:hash` or `name:roles:tenant:sha256:hash:expires_at`,
@@ -101,13 +104,14 @@ impl Keys {
             for entry in content.split(',').map(str::trim).filter(|entry| !entry.is_empty()) {
                 let wrong = |why: &str| InvalidEntry { line: index + 1, why: why.to_owned() };
                 let holder = entry::parse(entry).map_err(|why| wrong(&why))?;
-                if self.0.values().any(|other| other.name == holder.name) {
+                if self.names.contains(&holder.name) {
                     return Err(wrong("another key has this name"));
                 }
-                if self.0.contains_key(&holder.hash) {
+                if self.holders.contains_key(&holder.hash) {
                     return Err(wrong("the same key has two entries"));
                 }
-                self.0.insert(holder.hash, Arc::new(holder));
+                self.names.insert(Arc::clone(&holder.name));
+                self.holders.insert(holder.hash, Arc::new(holder));
             }
         }
         Ok(())
@@ -115,7 +119,7 @@ impl Keys {
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.0.len()
+        self.holders.len()
     }
 
     /// The holder of the presented key, if it is known.
@@ -123,12 +127,12 @@ impl Keys {
         if !KEY_LENGTH.contains(&presented.len()) {
             return None;
         }
-        self.0.get(&Hash::from(Sha256::digest(presented)))
+        self.holders.get(&Hash::from(Sha256::digest(presented)))
     }
 
     /// Whether this very key still counts: it is known, allows what it did, and has not ended.
     #[must_use]
     pub fn holds(&self, holder: &Holder) -> bool {
-        self.0.get(&holder.hash).is_some_and(|known| **known == *holder) && !holder.has_expired()
+        self.holders.get(&holder.hash).is_some_and(|known| **known == *holder) && !holder.has_expired()
     }
 }

@@ -1,14 +1,11 @@
-//! Whose request is being served: whom threads and quotas are shared between.
+//! Whose request is being served: whom threads, memory and quotas are shared between.
 
 use std::future::Future;
 use std::net::{IpAddr, Ipv6Addr};
+use std::sync::Arc;
 
+use super::Admission;
 use crate::tenant::Tenant;
-
-tokio::task_local! {
-    /// Of the request that this task serves.
-    static CURRENT: Client;
-}
 
 /// One of those who share the server.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -35,16 +32,16 @@ impl Client {
 
     /// The client that this task serves.
     pub fn current() -> Client {
-        CURRENT.try_with(Client::clone).unwrap_or(Client::Server)
+        Admission::current().map_or(Client::Server, |admission| admission.client.clone())
     }
 
     /// Does a piece of work that does not wait on behalf of this client.
     pub fn within<T>(&self, work: impl FnOnce() -> T) -> T {
-        CURRENT.sync_scope(self.clone(), work)
+        Arc::new(Admission::of(self.clone())).within(work)
     }
 
     /// Does the work on behalf of this client.
     pub fn serve<F: Future>(self, work: F) -> impl Future<Output = F::Output> {
-        CURRENT.scope(self, work)
+        Arc::new(Admission::of(self)).serve(work)
     }
 }

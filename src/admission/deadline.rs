@@ -31,6 +31,11 @@ impl Deadline {
         Deadline::of(Flag::default())
     }
 
+    /// One that never ends the work.
+    pub(super) fn none() -> Deadline {
+        Deadline(Arc::default())
+    }
+
     fn of(flag: Flag) -> (Deadline, StopOnDrop) {
         let deadline = Deadline(Arc::new(flag));
         (deadline.clone(), StopOnDrop(deadline))
@@ -42,8 +47,8 @@ impl Stop for Deadline {
         &self.0
     }
 
-    fn yield_slot(&self) -> Duration {
-        fair_scheduler::yield_slot()
+    fn yield_slot(&self) {
+        fair_scheduler::yield_slot();
     }
 }
 

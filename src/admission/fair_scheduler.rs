@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use parking_lot::Mutex;
+use stickslip_compute::begin_work;
 use stickslip_compute::simulation::Worker;
 use tokio::sync::oneshot;
 use tokio::time::timeout;
@@ -116,9 +117,9 @@ thread_local! {
     static SLOT: RefCell<SolverSlot> = const { RefCell::new(SolverSlot(None)) };
 }
 
-/// Lets others work if they are next, and then waits; returns how long. To be called by work at each of its checks.
-pub(super) fn yield_slot() -> Duration {
-    SLOT.with_borrow_mut(|slot| slot.0.as_mut().map_or(Duration::ZERO, Held::yield_slot))
+/// Lets others work if they are next, and then waits. To be called by work at each of its checks.
+pub(super) fn yield_slot() {
+    SLOT.with_borrow_mut(|slot| slot.0.as_mut().map(Held::yield_slot));
 }
 
 impl Worker for SolverSlot {
@@ -132,6 +133,7 @@ impl Worker for SolverSlot {
             }
         }
         drop(SLOT.replace(self));
+        begin_work();
         let _end = End;
         work()
     }
@@ -288,13 +290,13 @@ impl WaitQueues {
 }
 
 impl Held {
-    fn yield_slot(&mut self) -> Duration {
+    fn yield_slot(&mut self) {
         if self.scheduler.0.waiting.load(Ordering::Relaxed) == 0 {
-            return Duration::ZERO;
+            return;
         }
         let held = self.since.elapsed();
         if held < SLICE {
-            return Duration::ZERO;
+            return;
         }
         let scheduler = self.scheduler.clone();
         let mut queues = scheduler.0.queues.lock();
@@ -303,14 +305,13 @@ impl Held {
         if self.key.1 == Kind::Interactive && worked > INTERACTIVE {
             self.key.1 = Kind::Long;
         }
-        let (parked, slot) = (Instant::now(), scheduler.queue(self.key.clone(), self.arrival, &mut queues));
+        let slot = scheduler.queue(self.key.clone(), self.arrival, &mut queues);
         drop(queues);
         if let Ok(mut slot) = slot.blocking_recv()
             && let Some(held) = slot.0.take()
         {
             *self = Held { worked, ..held };
         }
-        parked.elapsed()
     }
 }
 

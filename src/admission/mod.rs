@@ -1,5 +1,6 @@
 //! Admission: slots on solver threads, permits for requests and memory, quotas of clients, time limits, cancellation.
 
+mod admitted;
 mod client;
 mod deadline;
 mod fair_scheduler;
@@ -7,6 +8,7 @@ mod memory;
 mod pool;
 mod quota;
 
+pub use admitted::{Admission, UnderWay};
 pub use client::Client;
 pub use deadline::{Deadline, StopOnDrop};
 pub use fair_scheduler::{INTERACTIVE, Kind, SLICE, SolverSlot};

@@ -15,14 +15,14 @@ use tokio::task::spawn_blocking;
 use tokio::time::timeout;
 use tracing::Span;
 
-use stickslip_compute::{LONGEST_WORK, Nanoseconds, simulation::Worker as _};
+use stickslip_compute::{LONGEST_WORK, Nanoseconds, begin_work, simulation::Worker as _};
 
 use crate::metrics::{Counted, SECONDS, SHORT_SECONDS, metrics};
 
 use super::deadline::{Deadline, StopOnDrop};
 use super::fair_scheduler::{FairScheduler, INTERACTIVE, Kind, SolverSlot};
 use super::memory::{BYTES, Memory};
-use super::{Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
+use super::{Admission, Client, Quota, QuotaExceeded, QuotaLimits, Quotas, Share};
 
 /// Work estimated below this runs on the thread that serves the connection.
 pub const INLINE: Nanoseconds = 100_000;
@@ -128,7 +128,7 @@ pub struct Taken {
     pub requests: usize,
     /// Requests that wait.
     pub waiting: usize,
-    /// Bytes that are reserved.
+    /// Bytes of the places of memory that are taken.
     pub bytes: usize,
 }
 
@@ -156,7 +156,7 @@ impl Pool {
             capacity,
             threads: FairScheduler::new(capacity.threads),
             requests: Permits::new(capacity.requests),
-            memory: Memory::new(capacity),
+            memory: Memory::new(&capacity),
             queue: Permits::new(capacity.queue),
             quotas: Quotas::new(capacity.quotas),
             meters: Arc::default(),
@@ -187,7 +187,15 @@ impl Pool {
     /// # Errors
     /// [`PoolError::Quota`] if it has as many as it may.
     pub fn share_of(&self, quota: Quota) -> Result<Share, PoolError> {
-        let mut share = self.0.quotas.no_share(quota);
+        self.share_for(quota, Client::current())
+    }
+
+    /// The same for a client.
+    ///
+    /// # Errors
+    /// As [`Pool::share_of`].
+    pub fn share_for(&self, quota: Quota, client: Client) -> Result<Share, PoolError> {
+        let mut share = self.0.quotas.no_share(quota, client);
         share.resize(1).map_err(PoolError::Quota)?;
         Ok(share)
     }
@@ -287,6 +295,7 @@ impl Pool {
             return Ok(work());
         }
         if cost < INLINE {
+            begin_work();
             return Ok(self.0.meters.timed(work));
         }
         // In a box, so that short work is not as large as long work.
@@ -299,14 +308,16 @@ impl Pool {
         .await
     }
 
-    /// Runs `work` on a thread of the blocking pool; it counts as so many pieces.
+    /// Runs `work` on a thread of the blocking pool; it counts as so many pieces. It owns what its request holds: a
+    /// caller that gives up frees no memory that is still in use.
     async fn on_thread<T: Send + 'static>(
         &self,
         pieces: usize,
         work: impl FnOnce() -> T + Send + 'static,
     ) -> Result<T, PoolError> {
-        let meters = Arc::clone(&self.0.meters);
+        let (meters, owned) = (Arc::clone(&self.0.meters), Admission::current());
         let task = spawn_blocking(move || {
+            let _owned = owned;
             let _running: Vec<_> = (0..pieces).map(|_| Counted::by(&meters.running)).collect();
             meters.timed(work)
         });

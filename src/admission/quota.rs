@@ -137,9 +137,9 @@ impl Quotas {
         Quotas { limits, used: Arc::default(), refused }
     }
 
-    /// A share of nothing yet, for the client that this task serves. The server itself has no quotas.
-    pub fn no_share(&self, quota: Quota) -> Share {
-        Share { quotas: self.clone(), of: (quota, Client::current()), amount: 0 }
+    /// A share of nothing yet. The server itself has no quotas.
+    pub fn no_share(&self, quota: Quota, client: Client) -> Share {
+        Share { quotas: self.clone(), of: (quota, client), amount: 0 }
     }
 
     /// The refusal of what is beyond a quota whose count is kept elsewhere.

@@ -4,7 +4,6 @@
 use std::marker::PhantomData;
 use std::sync::Arc;
 
-use axum::extract::State;
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use axum::routing::{MethodRouter, post};
@@ -14,18 +13,19 @@ use utoipa::openapi::path::{HttpMethod, Operation, PathItem, PathsBuilder};
 use utoipa::{PartialSchema, ToSchema};
 use uuid::Uuid;
 
-use crate::admission::Reservation;
+use crate::admission::Deadline;
 use crate::otlp;
 use stickslip_compute::computations::{
     Computation, DisplayOptions, Example, FromStored, OnContact, Outcome, Route, Task, Visitor,
 };
 
-use super::extract::{CheckedBody, HeldResources};
+use super::extract::CheckedBody;
 use super::facts::{Facts, Routes};
 use super::formats::{self, Format};
 use super::problem::Problem;
 use super::query_parameters::{CheckedQuery, QueryParams, QueryReader, described_format, words};
 use super::reply;
+use super::request_context::RequestContext;
 use super::state::{App, TenantApp};
 
 impl Routes {
@@ -109,13 +109,9 @@ fn written<C: Computation>(body: Vec<u8>, shown: &DisplayOptions) -> Response {
 }
 
 /// Answers a request that defines its contact.
-async fn answer<C: Computation>(
-    State(app): State<Arc<App>>,
-    query: AskedFor<C>,
-    request: CheckedBody<C::Request>,
-) -> Result<Response, Problem> {
+async fn answer<C: Computation>(query: AskedFor<C>, request: CheckedBody<C::Request>) -> Result<Response, Problem> {
     let shown = shown::<C>(query)?;
-    run::<C>(&app, request.body, shown, request.held).await
+    run::<C>(&request.context, request.body, shown).await
 }
 
 /// Answers a request that may name a stored contact.
@@ -125,31 +121,30 @@ async fn answer_stored<C: FromStored>(
     request: CheckedBody<C::Request>,
 ) -> Result<Response, Problem> {
     let shown = shown::<C>(query)?;
-    let CheckedBody { body, mut held, .. } = request;
+    let CheckedBody { body, context, .. } = request;
     match C::stored(body) {
         Ok((id, expected, task)) => {
-            let (_, body) = app.sessions.compute_on(id, expected, task, shown, &mut held.memory).await?;
-            Ok(held.on(written::<C>(body, &shown)))
+            let memory = &mut context.admission.memory.clone();
+            let (_, body) = app.sessions.compute_on(id, expected, task, shown, memory).await?;
+            Ok(written::<C>(body, &shown))
         }
-        Err(task) => run::<C>(&app, task, shown, held).await,
+        Err(task) => run::<C>(&context, task, shown).await,
     }
 }
 
 async fn run<C: Computation>(
-    app: &App,
+    context: &RequestContext,
     task: Task<C>,
     shown: DisplayOptions,
-    mut held: HeldResources,
 ) -> Result<Response, Problem> {
     C::check_shown(&task, &shown)?;
-    let (stop, _guard) = app.pool.deadline_after(held.spent);
-    held.resize(&app.pool, C::bytes(&task) + shown.bytes(C::rows(&task))).await?;
+    context.reserve(C::bytes(&task) + shown.bytes(C::rows(&task))).await?;
     let cost = C::cost(&task).saturating_add(shown.format.cost());
-    let work = move || {
-        let outcome = otlp::part!("solve").in_scope(|| C::run(task, &stop))?;
-        Ok::<_, Problem>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
+    let work = move |stop: &Deadline| {
+        let outcome = otlp::part!("solve").in_scope(|| C::run(task, stop))?;
+        Ok::<_, Problem>(otlp::part!("write").in_scope(|| shown.write(&outcome, stop))??)
     };
-    Ok(held.on(written::<C>(app.pool.run(cost, work).await??, &shown)))
+    Ok(written::<C>(context.run(cost, work).await??, &shown))
 }
 
 /// The reply of a computation on a stored contact, with the sequence of the contact as its version, or 304.
@@ -159,10 +154,11 @@ pub async fn get_of_contact<T: OnContact>(
     headers: &HeaderMap,
     format: Format,
     task: T,
+    context: &RequestContext,
 ) -> Result<Response, Problem> {
     match unchanged(app, id, headers, format).await? {
         Some(unchanged) => Ok(unchanged),
-        None => of_contact(app, id, format, task, Reservation::default()).await,
+        None => of_contact(app, id, format, task, context).await,
     }
 }
 
@@ -175,18 +171,18 @@ pub async fn unchanged(app: &App, id: Uuid, headers: &HeaderMap, format: Format)
     Ok(reply::is_current(headers, &tag).then(|| reply::not_modified(&tag)))
 }
 
-/// The reply of a computation on a stored contact, with the sequence of the contact as its version, for a request that
-/// has reserved this memory so far.
+/// The reply of a computation on a stored contact, with the sequence of the contact as its version.
 pub async fn of_contact<T: OnContact>(
     app: &App,
     id: Uuid,
     format: Format,
     task: T,
-    mut memory: Reservation,
+    context: &RequestContext,
 ) -> Result<Response, Problem> {
     let shown = DisplayOptions::in_format(format);
     task.check_shown(&shown)?;
-    let (sequence, body) = app.sessions.compute_on(id, None, task, shown, &mut memory).await?;
+    let (sequence, body) =
+        app.sessions.compute_on(id, None, task, shown, &mut context.admission.memory.clone()).await?;
     let tag = formats::tag(format, &sequence.to_string());
-    Ok(reply::holding(reply::tagged(formats::reply(format, body), &tag), memory))
+    Ok(reply::tagged(formats::reply(format, body), &tag))
 }

@@ -4,28 +4,25 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use axum::body::{BodyDataStream, Bytes};
-use axum::extract::{FromRequest, Request};
+use axum::extract::{FromRequest, FromRequestParts as _, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, header};
-use axum::response::Response;
 use futures::StreamExt as _;
 use http_body::Body as _;
 use sha2::{Digest as _, Sha256};
 use tokio::time::{Instant, timeout};
 
-use crate::admission::{INLINE, Pool, PoolError, Quota, RequestPermit, Reservation, Stage, UNCOUNTED};
+use crate::admission::{FREE, INLINE, Pool, PoolError, Quota, UNCOUNTED};
 use crate::otlp;
-use crate::server::RequestClient;
 use crate::server::connection_limits::DISCARDED;
 use crate::store::RequestKey;
-use stickslip_compute::Stop as _;
 use stickslip_compute::computations::files;
 use stickslip_compute::simulation::{bytes, cost};
 use stickslip_wire::{self as wire, Document};
 
 use super::path_and_headers::IdempotencyKey;
 use super::problem::{Code, Problem};
-use super::reply;
+use super::request_context::{Context, RequestContext};
 use super::request_limits::{BODY_LIMIT, FILE_LIMIT};
 use super::state::App;
 
@@ -35,30 +32,7 @@ pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
     pub body: T::Checked,
     /// The idempotency key, with a fingerprint of the request.
     pub key: Option<RequestKey>,
-    pub held: HeldResources,
-}
-
-/// The resources that a request holds: its permit until it is answered, and memory until the client has the reply.
-pub struct HeldResources {
-    pub memory: Reservation,
-    _permit: RequestPermit,
-    /// The work of its check, which counts for its deadline.
-    pub spent: Duration,
-}
-
-impl HeldResources {
-    /// Changes the reservation to this much memory.
-    ///
-    /// # Errors
-    /// A [`Problem`] if this much is not available.
-    pub async fn resize(&mut self, pool: &Pool, bytes: usize) -> Result<(), Problem> {
-        Ok(pool.resize(&mut self.memory, bytes).await?)
-    }
-
-    /// Transfers the memory to the reply.
-    pub fn on(self, response: Response) -> Response {
-        reply::holding(response, self.memory)
-    }
+    pub context: Arc<RequestContext>,
 }
 
 impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for CheckedBody<T, OPTIONAL> {
@@ -71,7 +45,7 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         if !declared.unwrap_or(OPTIONAL) {
             return Err(unsupported());
         }
-        let (parts, mut bytes, mut held) = receive(request, BODY_LIMIT, &app.pool).await?;
+        let (parts, mut bytes, context) = receive(request, BODY_LIMIT, app).await?;
         if OPTIONAL && bytes.is_empty() {
             bytes.extend_from_slice(b"{}");
         } else if declared.is_none() {
@@ -81,12 +55,11 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
         let length = bytes.len();
         let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
         if cost > 0 {
-            held.resize(&app.pool, length.saturating_mul(T::PARSED)).await?;
+            context.reserve(length.saturating_mul(T::PARSED)).await?;
         }
-        let (stop, _guard) = app.pool.deadline();
-        let profiles = app.sessions.profiles(&stop);
+        let profiles = app.sessions.profiles(context.deadline());
         let check = profiles.clone();
-        let work = move || {
+        let work = move |_: &_| {
             let _parsing = otlp::part!("parse").entered();
             let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
             let document = wire::parse::<T>(&bytes)?;
@@ -95,25 +68,24 @@ impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for Chec
             let read = if cost < INLINE { Ok(check.check(document)??) } else { Err((document, cost)) };
             Ok::<_, Problem>((read, key))
         };
-        let (read, key) = app.pool.run(cost, work).await??;
+        let (read, key) = context.run(cost, work).await??;
         let body = match read {
             Ok(body) => body,
             Err((document, cost)) => {
                 let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
-                held.resize(&app.pool, shape + length.saturating_mul(T::PARSED)).await?;
-                let work = move || otlp::part!("prepare").in_scope(|| profiles.check(document));
-                app.pool.run(cost, work).await???
+                context.reserve(shape + length.saturating_mul(T::PARSED)).await?;
+                let work = move |_: &_| otlp::part!("prepare").in_scope(|| profiles.check(document));
+                context.run(cost, work).await???
             }
         };
-        held.spent = stop.flag().before();
-        Ok(CheckedBody { body, key, held })
+        Ok(CheckedBody { body, key, context })
     }
 }
 
 /// The bytes of a file, with memory for what they become.
 pub struct FileBody {
     pub bytes: Vec<u8>,
-    pub held: HeldResources,
+    pub context: Arc<RequestContext>,
 }
 
 /// The media types of a file.
@@ -128,9 +100,9 @@ impl FromRequest<Arc<App>> for FileBody {
             let detail = format!("Content-Type must be one of {}", FILE_TYPES.join(", "));
             return Err(Problem::new(Code::UnsupportedMediaType, detail));
         }
-        let (_, bytes, mut held) = receive(request, FILE_LIMIT, &app.pool).await?;
-        held.resize(&app.pool, files::memory(&bytes)).await?;
-        Ok(FileBody { bytes, held })
+        let (_, bytes, context) = receive(request, FILE_LIMIT, app).await?;
+        context.reserve(files::memory(&bytes)).await?;
+        Ok(FileBody { bytes, context })
     }
 }
 
@@ -152,24 +124,28 @@ fn check_encoding(headers: &HeaderMap) -> Result<(), Problem> {
 }
 
 /// Reads a body of at most so many bytes, and then acquires a permit for its request: a slow client keeps no others
-/// waiting. A client that expects to be asked for its body is not asked for one that is too long.
-async fn receive(request: Request, limit: usize, pool: &Pool) -> Result<(Parts, Vec<u8>, HeldResources), Problem> {
-    let (parts, body) = request.into_parts();
+/// waiting.
+async fn receive(
+    request: Request,
+    limit: usize,
+    app: &Arc<App>,
+) -> Result<(Parts, Vec<u8>, Arc<RequestContext>), Problem> {
+    let (mut parts, body) = request.into_parts();
+    let Context(context) = Context::from_request_parts(&mut parts, app).await?;
     check_encoding(&parts.headers)?;
     let too_large = || {
         let detail = format!("the body has more than the {limit} bytes that are allowed");
         Problem::new(Code::TooLarge, detail)
     };
-    if parts.headers.contains_key(header::EXPECT) && body.size_hint().lower() > limit as u64 {
+    if body.size_hint().lower() > limit as u64 {
         return Err(too_large());
     }
     let declared = body.size_hint().upper().and_then(|length| usize::try_from(length).ok()).unwrap_or(usize::MAX);
-    let time = parts.extensions.get::<RequestClient>().map_or(Duration::MAX, |client| client.body_time);
-    let mut arriving = ArrivingBody { stream: body.into_data_stream(), left: time };
+    let pool: &Pool = &app.pool;
+    let mut arriving = ArrivingBody { stream: body.into_data_stream(), left: context.body_time };
     let (mut bytes, mut length) = (Vec::new(), 0_usize);
-    let mut memory = Reservation::default();
     // Until the body has arrived: however slowly it does, others have room for theirs.
-    let mut share = pool.quotas().no_share(Quota::BodyBytes);
+    let (mut small, mut share) = (None, None);
     while let Some(chunk) = arriving.next().await? {
         length = length.saturating_add(chunk.len());
         if length <= limit {
@@ -177,9 +153,16 @@ async fn receive(request: Request, limit: usize, pool: &Pool) -> Result<(Parts, 
             if length > bytes.capacity() {
                 let room = (2 * length).min(declared).min(limit).max(length);
                 if room > UNCOUNTED {
+                    let client = || context.admission.client.clone();
+                    let share = share.get_or_insert_with(|| pool.quotas().no_share(Quota::BodyBytes, client()));
                     share.resize(room).map_err(PoolError::Quota)?;
+                    if room > FREE {
+                        context.reserve(room).await?;
+                        small = None;
+                    } else if small.is_none() {
+                        small = Some(pool.reserve_arriving(declared.min(FREE)).await?);
+                    }
                 }
-                pool.resize_in(Stage::Body, &mut memory, room).await?;
                 bytes.reserve_exact(room - bytes.len());
             }
             bytes.extend_from_slice(&chunk);
@@ -190,9 +173,9 @@ async fn receive(request: Request, limit: usize, pool: &Pool) -> Result<(Parts, 
     if length > limit {
         return Err(too_large());
     }
-    drop(share);
-    let permit = pool.admit_request().await?;
-    Ok((parts, bytes, HeldResources { memory, _permit: permit, spent: Duration::ZERO }))
+    context.admission.admit(pool).await?;
+    drop((small, share));
+    Ok((parts, bytes, context))
 }
 
 /// The body of a request while it arrives.

@@ -11,6 +11,7 @@ mod path_and_headers;
 pub mod problem;
 mod query_parameters;
 mod reply;
+mod request_context;
 pub mod request_limits;
 mod request_metrics;
 mod resources;
@@ -20,13 +21,10 @@ use std::future::Future;
 use std::sync::{Arc, LazyLock};
 
 use axum::Router;
-use axum::http::header::AUTHORIZATION;
 use axum::middleware::from_fn_with_state;
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tower::ServiceBuilder;
-use tower_http::catch_panic::CatchPanicLayer;
-use tower_http::sensitive_headers::SetSensitiveRequestHeadersLayer;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 use utoipa_swagger_ui::{Config, SwaggerUi};
@@ -37,8 +35,9 @@ use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use stickslip_compute::computations::for_each_computation;
 
 use facts::{Facts, Routes};
-use middleware::request_log::{Observed, observe};
-use middleware::{access_control, security_headers};
+use middleware::request_log::{serve as serve_request, serve_across};
+use middleware::security_headers;
+use request_context::Reception;
 use request_metrics::RequestMetrics;
 use resources::{
     contacts, cycle, cycles, events, files, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page,
@@ -65,15 +64,20 @@ pub async fn serve_within(
     app: App,
     stop: impl Future<Output = ()> + Send + 'static,
 ) {
-    let (sessions, jobs, pool) = (app.sessions.clone(), app.jobs.clone(), app.pool.clone());
+    let (sessions, jobs) = (app.sessions.clone(), app.jobs.clone());
     // The document always parses; without it, metrics of endpoints would appear with their first request.
     let metrics = Arc::new(RequestMetrics::of(&serde_json::from_str(document()).unwrap_or_default()));
     let (stopping, stops) = watch::channel(false);
+    let reception = Reception {
+        keys: app.access.keys.clone(),
+        metrics,
+        pool: app.pool.clone(),
+        stops,
+        crosses_origins: !app.access.origins.is_empty(),
+    };
     let service = Service {
-        by_address: app.access.keys.is_none(),
         hosts: app.access.hosts.clone(),
-        router: router(app, (metrics, pool.clone(), stops)),
-        pool,
+        router: router(app, reception),
         body_time: limiter.limits.body,
         proxies: Arc::clone(&limiter.proxies),
         stopping,
@@ -86,21 +90,21 @@ pub async fn serve_within(
     .await;
 }
 
-/// All routes with the middleware around them, from the outermost layer to the innermost.
-fn router(app: App, observed: Observed) -> Router {
+/// All routes, with what is around every handler.
+fn router(app: App, reception: Reception) -> Router {
     let (api, _) = described().router.split_for_parts();
     let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
-    let Access { keys, origins, .. } = app.access.clone();
-    let origins = (!origins.is_empty()).then(|| security_headers::cross_origin(&origins));
-    let keys = keys.map(|keys| from_fn_with_state((keys, observed.1.clone()), access_control::admit));
+    let (origins, reception) = (Arc::clone(&app.access.origins), Arc::new(reception));
+    let all = api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found);
+    if origins.is_empty() {
+        return all.layer(from_fn_with_state(reception, serve_request));
+    }
     let layers = ServiceBuilder::new()
-        .layer(SetSensitiveRequestHeadersLayer::new([AUTHORIZATION]))
-        .layer(from_fn_with_state(observed, observe))
-        .layer(CatchPanicLayer::custom(meta::panicked))
+        .layer(from_fn_with_state(Arc::clone(&reception), serve_request))
         // Before keys are asked for: a browser asks whether it may send one.
-        .option_layer(origins)
-        .option_layer(keys);
-    api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found).layer(layers)
+        .layer(security_headers::cross_origin(&origins))
+        .layer(from_fn_with_state(reception, serve_across));
+    all.layer(layers)
 }
 
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.

@@ -11,6 +11,7 @@ use uuid::Uuid;
 
 use super::accept::{NAMED, admission, list_members};
 use super::problem::{Code, Problem};
+use super::request_context::{Context, RequestContext};
 use super::state::{App, TenantApp};
 use crate::sessions::Expected;
 
@@ -26,6 +27,8 @@ macro_rules! identifier {
         pub struct $name {
             #[param(ignore)]
             pub app: Arc<App>,
+            #[param(ignore)]
+            pub context: Arc<RequestContext>,
             #[doc = $description]
             pub id: Uuid,
         }
@@ -35,7 +38,8 @@ macro_rules! identifier {
 
             async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
                 let (app, id) = identified(parts, app, Code::$missing, $noun).await?;
-                Ok($name { app, id })
+                let Context(context) = Context::from_request_parts(parts, &app).await?;
+                Ok($name { app, context, id })
             }
         }
     };
@@ -49,7 +53,7 @@ identifier!(JobPath, "The identifier of the job.", JobNotFound, "job");
 pub struct IfMatch {
     /// The sequence that the contact must have, in quotes: its `ETag`. If the contact has another sequence, nothing
     /// changes and the answer is 412. With the checksum of the label after a dot, as `GET /contacts/{id}` gives it, the
-    /// label must be the same too; `.00000000` stands for no label. The prefix `W/` of a compressed reply is allowed.
+    /// label must be the same too; `.00000000` stands for no label. The prefix `W/` of some proxies is allowed.
     #[param(rename = "If-Match", value_type = Option<String>, nullable = false,
         pattern = r#"^((W/)?"[0-9]{1,19}(\.[0-9a-f]{8})?"|\*)$"#)]
     pub expected: Option<Expected>,
@@ -116,7 +120,7 @@ impl FromRequestParts<Arc<App>> for IfMatch {
 
     async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
         let parse = |text: &str| {
-            // A version is the same version in a compressed reply.
+            // A proxy that compresses a reply makes its version a weak one.
             let tag = text.strip_prefix("W/").unwrap_or(text);
             let tag = tag.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
             if text == "*" { Some(None) } else { tag.and_then(expected).map(Some) }

@@ -1,12 +1,9 @@
-//! Replies: JSON bodies, versions, and the memory that a reply holds until it is sent.
+//! Replies: JSON bodies and versions.
 
-use std::sync::Arc;
-
-use axum::body::{Body, HttpBody as _};
+use axum::body::Body;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 
-use crate::admission::Reservation;
 use crate::otlp;
 use crate::store::Reply;
 use stickslip_compute::formats;
@@ -79,19 +76,6 @@ pub fn of_change(reply: Reply) -> Response {
         }
         None => response,
     }
-}
-
-/// A reply whose memory stays reserved until it is sent: that of its text, as what it was made of is gone.
-pub fn holding(mut response: Response, mut held: Reservation) -> Response {
-    if held.is_counted() {
-        if let Some(length) = response.body().size_hint().exact() {
-            // A text that grows by doubling.
-            held.shrink(usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(2));
-        }
-        // In an `Arc`, because extensions must be `Clone`.
-        response.extensions_mut().insert(Arc::new(held));
-    }
-    response
 }
 
 /// A value as JSON.

@@ -2,12 +2,13 @@
 //!
 //! The labels are bounded: the routes of the service and the methods of HTTP. Anything else is `none` or `other`.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
+use std::sync::Arc;
 use std::time::Duration;
 
 use axum::http::Method;
 use prometheus::core::Collector;
-use prometheus::{HistogramOpts, HistogramVec, IntCounterVec, IntGauge, IntGaugeVec, Opts};
+use prometheus::{Histogram, HistogramOpts, HistogramVec, IntCounter, IntCounterVec, IntGauge, IntGaugeVec, Opts};
 use serde_json::Value;
 
 use crate::metrics::{OWN_NAME, SECONDS};
@@ -26,12 +27,32 @@ pub struct RequestMetrics {
     requests: IntCounterVec,
     duration: HistogramVec,
     in_flight: IntGaugeVec,
-    /// The routes that the OpenAPI document describes.
-    routes: HashSet<String>,
+    /// The meters of the routes that the OpenAPI document describes, by their methods.
+    routes: HashMap<String, Vec<Arc<EndpointMeters>>>,
 }
 
-/// The route and the method of a request.
-pub type Endpoint<'a> = [&'a str; 2];
+/// The meters of a route and a method.
+pub struct EndpointMeters {
+    method: &'static str,
+    /// Requests that have no answer yet.
+    pub in_flight: IntGauge,
+    duration: Histogram,
+    /// By the statuses that are described.
+    statuses: Vec<(u16, IntCounter)>,
+    others: IntCounterVec,
+    route: String,
+}
+
+impl EndpointMeters {
+    /// Counts a request that has been answered, or abandoned.
+    pub fn answered(&self, status: u16, time: Duration) {
+        self.duration.observe(time.as_secs_f64());
+        match self.statuses.iter().find(|(known, _)| *known == status) {
+            Some((_, requests)) => requests.inc(),
+            None => self.others.with_label_values(&[&*self.route, self.method, &status.to_string()]).inc(),
+        }
+    }
+}
 
 impl RequestMetrics {
     /// Nothing has passed yet. What the OpenAPI document describes is shown from the beginning: a rate needs a zero to
@@ -46,38 +67,41 @@ impl RequestMetrics {
             requests: IntCounterVec::new(requests, &["route", "method", "status"]).expect(OWN_NAME),
             duration: HistogramVec::new(duration, &["route", "method"]).expect(OWN_NAME),
             in_flight: IntGaugeVec::new(in_flight, &["route", "method"]).expect(OWN_NAME),
-            routes: HashSet::new(),
+            routes: HashMap::new(),
         };
         for (route, item) in document["paths"].as_object().into_iter().flatten() {
-            for method in METHODS {
-                let Some(answers) = item[method.to_lowercase()]["responses"].as_object() else { continue };
-                metrics.duration.with_label_values(&[route, method]);
-                metrics.in_flight.with_label_values(&[route, method]);
-                for status in answers.keys() {
-                    metrics.requests.with_label_values(&[route, method, status]);
-                }
-            }
-            metrics.routes.insert(route.clone());
+            let described = METHODS.into_iter().filter_map(|method| {
+                let answers = item[method.to_lowercase()]["responses"].as_object()?;
+                Some(Arc::new(metrics.meters(route, method, answers.keys().filter_map(|status| status.parse().ok()))))
+            });
+            let described = described.collect();
+            metrics.routes.insert(route.clone(), described);
         }
         metrics
     }
 
-    /// The labels of a request that matches a route.
-    pub fn endpoint<'a>(&self, route: Option<&'a str>, method: &Method) -> Endpoint<'a> {
-        let route = route.map_or(NONE, |route| if self.routes.contains(route) { route } else { OTHER });
+    fn meters(&self, route: &str, method: &'static str, statuses: impl Iterator<Item = u16>) -> EndpointMeters {
+        let counter = |status: u16| (status, self.requests.with_label_values(&[route, method, &status.to_string()]));
+        EndpointMeters {
+            method,
+            in_flight: self.in_flight.with_label_values(&[route, method]),
+            duration: self.duration.with_label_values(&[route, method]),
+            statuses: statuses.map(counter).collect(),
+            others: self.requests.clone(),
+            route: route.to_owned(),
+        }
+    }
+
+    /// The meters of a request that matches a route.
+    pub fn of_request(&self, route: Option<&str>, method: &Method) -> Arc<EndpointMeters> {
         let method = METHODS.into_iter().find(|known| *known == method.as_str()).unwrap_or(METHODS[METHODS.len() - 1]);
-        [route, method]
-    }
-
-    /// How many requests of an endpoint have no answer yet.
-    pub fn in_flight(&self, endpoint: Endpoint<'_>) -> IntGauge {
-        self.in_flight.with_label_values(&endpoint)
-    }
-
-    /// Counts a request that has been answered, or abandoned.
-    pub fn answered(&self, [route, method]: Endpoint<'_>, status: u16, time: Duration) {
-        self.duration.with_label_values(&[route, method]).observe(time.as_secs_f64());
-        self.requests.with_label_values(&[route, method, &status.to_string()]).inc();
+        let described = route.and_then(|route| self.routes.get(route));
+        let known = described.into_iter().flatten().find(|meters| meters.method == method);
+        known.map(Arc::clone).unwrap_or_else(|| {
+            let known = route.filter(|_| described.is_some());
+            let label = known.unwrap_or(if route.is_some() { OTHER } else { NONE });
+            Arc::new(self.meters(label, method, std::iter::empty()))
+        })
     }
 
     /// The metrics of all endpoints that are described or have been asked.

@@ -7,6 +7,7 @@ use axum::http::HeaderValue;
 use axum::http::request::Parts;
 use tokio::sync::watch;
 
+use super::request_context::RequestContext;
 use crate::access::{Holder, Keys};
 use crate::admission::Pool;
 use crate::jobs::Jobs;
@@ -43,12 +44,13 @@ impl FromRequestParts<Arc<App>> for TenantApp {
     type Rejection = std::convert::Infallible;
 
     async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Self::Rejection> {
-        let scoped = parts.extensions.get::<Arc<Holder>>().map(|holder| {
-            let Holder { name, tenant, .. } = &**holder;
-            let sessions = app.sessions.for_tenant(tenant.clone(), Arc::clone(name));
-            let jobs = app.jobs.for_tenant(tenant.clone());
-            Arc::new(App { sessions, jobs, pool: app.pool.clone(), access: app.access.clone() })
-        });
+        let scoped =
+            parts.extensions.get::<Arc<RequestContext>>().and_then(|context| context.holder.as_ref()).map(|holder| {
+                let Holder { name, tenant, .. } = &**holder;
+                let sessions = app.sessions.for_tenant(tenant.clone(), Arc::clone(name));
+                let jobs = app.jobs.for_tenant(tenant.clone());
+                Arc::new(App { sessions, jobs, pool: app.pool.clone(), access: app.access.clone() })
+            });
         Ok(TenantApp(scoped.unwrap_or_else(|| Arc::clone(app))))
     }
 }

@@ -6,14 +6,11 @@ use clap::Args;
 
 use super::io::print;
 use super::progress;
-use super::settings::ConfigFile;
 use crate::store;
 
 /// The store and the copy.
 #[derive(Args)]
 pub struct Backup {
-    #[command(flatten)]
-    _file: ConfigFile,
     /// The file to create; an existing file is never overwritten.
     file: PathBuf,
     /// The store, `sqlite:PATH`.

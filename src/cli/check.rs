@@ -4,15 +4,12 @@ use clap::Args;
 
 use super::io::print;
 use super::progress;
-use super::settings::ConfigFile;
 use crate::sessions::{self, CheckEvent};
 use crate::store;
 
 /// The store, and the allowed difference.
 #[derive(Args)]
 pub struct Check {
-    #[command(flatten)]
-    _file: ConfigFile,
     /// The store, `sqlite:PATH` or `postgres://…`; the service may be running.
     #[arg(long, env = "STICKSLIP_STORE", default_value = "sqlite:stickslip.db")]
     store: String,

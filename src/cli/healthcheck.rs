@@ -6,7 +6,6 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::settings::ConfigFile;
 use crate::server::tls;
 
 /// How long a service may take to reply.
@@ -15,8 +14,6 @@ const REPLY_TIMEOUT: Duration = Duration::from_secs(2);
 /// The service to check. The settings are those of `serve`, so that a container needs no others.
 #[derive(Args)]
 pub struct Healthcheck {
-    #[command(flatten)]
-    _file: ConfigFile,
     /// Address and port of the service.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,

@@ -105,6 +105,11 @@ impl Limits {
         }
     }
 
+    /// How long requests may take to finish once the server stops.
+    pub fn drain_time(&self) -> Duration {
+        self.drain_time
+    }
+
     /// The limits of connections, lowered to what the limit of open files allows.
     pub fn connections(&self) -> ConnectionLimits {
         let most = room_for(self.max_connections);

@@ -8,6 +8,7 @@ mod healthcheck;
 mod io;
 mod key;
 mod limits;
+mod log_queue;
 mod manual;
 mod progress;
 mod reload;

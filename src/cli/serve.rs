@@ -3,15 +3,16 @@
 use std::io;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Duration;
+use std::sync::{Arc, OnceLock};
+use std::thread;
+use std::time::{Duration, Instant};
 
 use axum::http::uri::Authority;
 use axum::http::{HeaderValue, Uri};
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, ValueEnum};
 use tokio::net::TcpListener;
-use tokio::signal::unix::{SignalKind, signal};
+use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
 use tracing_subscriber::filter::{LevelFilter, ParseError, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
@@ -21,24 +22,20 @@ use tracing_subscriber::{Layer as _, fmt};
 use super::io::print;
 use super::key;
 use super::limits::Limits;
+use super::log_queue::LogQueue;
 use super::reload::reload_on_change;
-use super::settings::{ConfigFile, Settings};
+use super::settings::Settings;
 use crate::access::Keys;
 use crate::admission::Pool;
 use crate::api::middleware::security_headers::origin;
 use crate::api::{self, Access, App};
 use crate::jobs::{self, Jobs};
 use crate::otlp;
+use crate::server::connection_limits::{GRACE, LAST};
 use crate::server::tls::{Tls, TlsFiles};
 use crate::server::{ConnectionLimiter, OwnHosts, memory_budget};
 use crate::sessions::{self, Sessions};
 use crate::store::{self, Store};
-
-/// How long work that does not check for cancellation may delay the end of the process.
-const SHUTDOWN_TIMEOUT: Duration = Duration::from_millis(500);
-
-/// How long the process may take at its end to release the chunks of jobs under way.
-const JOB_RELEASE_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// Threads for the store and for work that begins, beside those of work that has begun, which are at most as many as
 /// requests.
@@ -52,11 +49,9 @@ const SHORTEST_TIME: Duration = Duration::from_secs(1);
 /// The store in the present folder that is served if no other one is named.
 const DEFAULT_STORE: &str = "sqlite:stickslip.db";
 
-/// The settings. Each can be a flag, a variable or an entry of the configuration file (`settings`).
+/// The settings. Each can be a flag or a variable of the environment (`settings`).
 #[derive(Args)]
 pub struct Serve {
-    #[command(flatten)]
-    _file: ConfigFile,
     /// Address and port to listen on; port 0 takes any free port.
     #[arg(long, env = "STICKSLIP_LISTEN", default_value = "127.0.0.1:8080")]
     listen: SocketAddr,
@@ -138,48 +133,120 @@ impl Serve {
 
 /// Serves until a signal stops it.
 pub fn serve(mut options: Serve) -> Result<(), String> {
-    // Spans go to a collector alone, and are not even made where there is none.
-    let filter = options.log.clone().with_target(otlp::SPANS, LevelFilter::OFF);
     // Work that yields to other work keeps its thread, and must leave some to the work that it yields to.
     let threads = SPARE_THREADS + options.limits.capacity().requests.min(MOST_THREADS);
     let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
+    // Before anything else: what a signal does without a handler is not what it is meant to do.
+    let mut signals = runtime.block_on(async { Signals::listen() })?;
+    // Spans go to a collector alone, and are not even made where there is none.
+    let filter = options.log.clone().with_target(otlp::SPANS, LevelFilter::OFF);
     let endpoint = options.otlp_endpoint.as_deref();
     let traces = endpoint.map(|endpoint| otlp::layer(endpoint, runtime.handle().clone())).transpose();
     let (spans, exporter) = traces.map_err(|error| format!("--otlp-endpoint: {error}"))?.unzip();
-    let log = fmt::layer().with_writer(io::stderr);
+    let queue = LogQueue::to(io::stderr()).map_err(|error| format!("cannot start: {error}"))?;
+    let log = fmt::layer().with_writer(queue.clone());
     let lines = match options.log_format {
         LogFormat::Text => log.with_ansi(false).boxed(),
         LogFormat::Json => log.json().flatten_event(true).boxed(),
     };
     tracing_subscriber::registry().with(spans).with(lines.with_filter(filter)).init();
     log_panics();
-    options.take_first_key()?;
-    let (access, keys) = access(&options)?;
-    runtime.block_on(survive_file_size_limit())?;
-    let tls = tls(&options)?;
-    let store = runtime.block_on(store::open(&options.store)).map_err(|error| error.to_string())?;
-    let expire_after_s = options.expire_after.map(|idle| idle.as_secs());
-    tracing::info!(
-        version = env!("CARGO_PKG_VERSION"),
-        commit = env!("BUILD_COMMIT"),
-        pid = std::process::id(),
-        cache_bytes = options.cache_bytes.as_u64(),
-        expire_after_s,
-        "starting"
-    );
-    let reload = reload(&options, keys, tls.clone());
-    let served = runtime.block_on(listen(&options, access, tls, reload, Arc::clone(&store)));
+    let stop = Stopping::new(options.limits.drain_time(), queue.clone());
+    let served = (|| {
+        options.take_first_key()?;
+        let (access, keys) = access(&options)?;
+        let tls = tls(&options)?;
+        let opened = runtime.block_on(async {
+            tokio::select! {
+                opened = store::open(&options.store) => Some(opened),
+                // A database may be waited for.
+                () = signals.stop() => None,
+            }
+        });
+        let Some(store) = opened.transpose().map_err(|error| error.to_string())? else { return Ok(None) };
+        tracing::info!(
+            version = env!("CARGO_PKG_VERSION"),
+            commit = env!("BUILD_COMMIT"),
+            pid = std::process::id(),
+            cache_bytes = options.cache_bytes.as_u64(),
+            expire_after_s = options.expire_after.map(|idle| idle.as_secs()),
+            "starting"
+        );
+        let reload = reload(&options, keys, tls.clone());
+        let listening = listen(&options, access, tls, reload, Arc::clone(&store), (signals, stop.clone()));
+        runtime.block_on(listening).map(|()| Some(store))
+    })();
+    let end = stop.begin();
     if let Some(exporter) = exporter {
-        exporter.finish();
+        exporter.finish(end.saturating_duration_since(Instant::now()) / 2);
     }
-    runtime.shutdown_timeout(SHUTDOWN_TIMEOUT);
-    // The last handle: dropping it closes the store before the process ends.
-    drop(store);
+    runtime.shutdown_timeout(end.saturating_duration_since(Instant::now()) / 2);
+    // The last handle of the store: dropping it closes the store before the process ends.
+    let served = served.map(drop);
     if served.is_ok() {
         tracing::info!("stopped");
     }
+    queue.finish(end.min(Instant::now() + LAST));
     served
+}
+
+/// The signals that are listened for.
+struct Signals {
+    terminate: Signal,
+    interrupt: Signal,
+    hangup: Signal,
+}
+
+impl Signals {
+    fn listen() -> Result<Signals, String> {
+        // A write beyond the limit of the size of files (`ulimit -f`) fails as on a full disk: without a handler, the
+        // signal that comes with it ends the process. A handler is never removed.
+        let beyond = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
+        let kinds = [SignalKind::terminate(), SignalKind::interrupt(), SignalKind::hangup(), beyond].map(signal);
+        match kinds {
+            [Ok(terminate), Ok(interrupt), Ok(hangup), Ok(_)] => Ok(Signals { terminate, interrupt, hangup }),
+            _ => Err("cannot listen for signals".to_owned()),
+        }
+    }
+
+    /// Waits for one that stops the process.
+    async fn stop(&mut self) {
+        tokio::select! {
+            _ = self.terminate.recv() => {}
+            _ = self.interrupt.recv() => {}
+        }
+    }
+}
+
+/// The one deadline of all that a stop takes. Clones share it.
+#[derive(Clone)]
+struct Stopping {
+    allowed: Duration,
+    end: Arc<OnceLock<Instant>>,
+    log: LogQueue,
+}
+
+impl Stopping {
+    fn new(drain: Duration, log: LogQueue) -> Stopping {
+        Stopping { allowed: drain + GRACE + LAST, end: Arc::default(), log }
+    }
+
+    /// The deadline, which is counted from the first call. What has not ended then ends with the process: all that was
+    /// acknowledged is stored.
+    fn begin(&self) -> Instant {
+        *self.end.get_or_init(|| {
+            let (allowed, log) = (self.allowed, self.log.clone());
+            // Without a thread for it the stop takes as long as its parts do.
+            let _ = thread::Builder::new().name("stop".to_owned()).spawn(move || {
+                thread::sleep(allowed);
+                tracing::warn!("the stop has taken too long: the process ends now");
+                log.finish(Instant::now() + Duration::from_millis(50));
+                std::process::exit(0);
+            });
+            Instant::now() + allowed
+        })
+    }
 }
 
 impl Serve {
@@ -193,13 +260,6 @@ impl Serve {
         self.keys.push(file.to_string_lossy().into_owned());
         Ok(())
     }
-}
-
-/// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the
-/// signal that comes with it ends the process. The handler is never removed.
-async fn survive_file_size_limit() -> Result<(), String> {
-    let kind = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
-    signal(kind).map(drop).map_err(|error| format!("cannot listen for signals: {error}"))
 }
 
 /// Logs panics with their location. The line of the failed request is logged separately.
@@ -318,18 +378,20 @@ async fn listen(
     tls: Option<Tls>,
     (files, reload): (Vec<PathBuf>, impl Fn() + Send + 'static),
     store: Arc<dyn Store>,
+    (signals, stopping): (Signals, Stopping),
 ) -> Result<(), String> {
     let address = options.listen;
     let listener = TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?;
     let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
-    let signals = [SignalKind::terminate(), SignalKind::interrupt(), SignalKind::hangup()].map(signal);
-    let [Ok(mut terminate), Ok(mut interrupt), Ok(hangup)] = signals else {
-        return Err("cannot listen for signals".to_owned());
-    };
-    let stop = async move {
-        tokio::select! {
-            _ = terminate.recv() => {}
-            _ = interrupt.recv() => {}
+    let Signals { mut terminate, mut interrupt, hangup } = signals;
+    let stop = {
+        let stopping = stopping.clone();
+        async move {
+            tokio::select! {
+                _ = terminate.recv() => {}
+                _ = interrupt.recv() => {}
+            }
+            stopping.begin();
         }
     };
     let pool = Pool::new(options.limits.capacity());
@@ -353,10 +415,12 @@ async fn listen(
     tokio::spawn(reload_on_change(files, hangup, reload));
     let scheme = if tls.is_some() { "https" } else { "http" };
     tracing::info!(%address, threads = pool.capacity().threads.max(1), memory_bound, "listening");
+    // What was said before is there when this is.
+    stopping.log.finish(Instant::now() + LAST);
     print(format_args!("stickslip listens on {scheme}://{address}, the page at /, the API at /docs"))?;
     let app = App { sessions, jobs, pool, access };
     api::serve_within(limiter, listener, tls, app, stop).await;
     // If the store is unreachable, other processes take over when the leases expire.
-    let _ = tokio::time::timeout(JOB_RELEASE_TIMEOUT, working).await;
+    let _ = tokio::time::timeout_at((stopping.begin() - LAST / 2).into(), working).await;
     Ok(())
 }

@@ -6,48 +6,59 @@ use stickslip_mechanics::unit_prefix;
 
 const INDENT: usize = 2;
 const NAMES: usize = 34;
-/// Units by the last words of a name after that of the object around it; the first that fits.
-const UNITS: [(&str, &str); 22] = [
-    ("_error", ""),
-    ("sliding_ratio", ""),
-    ("loss_factor", ""),
-    ("radius_of_curvature", "m"),
-    ("gross_slip_force", "N"),
-    ("stiffness", "N/m"),
-    ("energy", "J"),
-    ("force_amplitude", "N"),
-    ("force", "N"),
-    ("radius", "m"),
-    ("displacement_amplitude", "m"),
-    ("displacement", "m"),
-    ("indentation", "m"),
-    ("pressure", "Pa"),
-    ("shear", "Pa"),
-    ("residual_centre", "Pa"),
-    ("residual_max", "Pa"),
-    ("residual_mean", "Pa"),
-    ("residual_min", "Pa"),
-    ("e_star", "Pa"),
-    ("g_star", "Pa"),
-    ("compute_time", "s"),
-];
+/// Units that descriptions state, longer ones before those that they begin with.
+const UNITS: [&str; 14] = ["N²/m³", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "Pa", "Hz", "kg", "N", "J", "m³", "m", "s"];
 
-/// The document of a reply as lines: numbers with six digits, columns by their number and range, warnings in full.
-pub fn summary(reply: &Value) -> String {
+/// A part of the OpenAPI document, and the document.
+#[derive(Clone, Copy)]
+struct Described<'a>(&'a Value, &'a Value);
+
+impl<'a> Described<'a> {
+    /// What it refers to.
+    fn resolved(self) -> Described<'a> {
+        let place = self.0["$ref"].as_str().and_then(|place| place.strip_prefix('#'));
+        place.and_then(|place| self.1.pointer(place)).map_or(self, |part| Described(part, self.1))
+    }
+
+    /// A member, in whichever of the alternatives has it.
+    fn member(self, name: &str) -> Option<Described<'a>> {
+        let own = self.resolved();
+        let parts = ["oneOf", "anyOf", "allOf"].into_iter().filter_map(|key| own.0[key].as_array()).flatten();
+        let found = own.0["properties"].get(name).map(|member| Described(member, own.1));
+        found.or_else(|| parts.chain(own.0.get("items")).find_map(|part| Described(part, own.1).member(name)))
+    }
+
+    /// The unit in its description: behind a comma, and not a part of a word or a formula.
+    fn unit(self) -> &'static str {
+        let text = self.0["description"].as_str().unwrap_or_default();
+        let stated = text.match_indices(", ").find_map(|(place, _)| {
+            let rest = &text[place + 2..];
+            let unit = UNITS.into_iter().find(|unit| rest.starts_with(unit))?;
+            let next = rest[unit.len()..].chars().next();
+            next.is_none_or(|next| !next.is_alphanumeric() && !"/²^'′_".contains(next)).then_some(unit)
+        });
+        stated.unwrap_or_default()
+    }
+}
+
+/// The document of a reply to a `POST` of this path as lines: numbers with six digits and the units that the OpenAPI
+/// document states, columns by their number and range, warnings in full.
+pub fn summary(reply: &Value, path: &str, document: &Value) -> String {
     let mut lines = Vec::new();
-    members("", reply, 0, &mut lines);
+    let schema = &document["paths"][path]["post"]["responses"]["200"]["content"]["application/json"]["schema"];
+    members(Some(Described(schema, document)), reply, 0, &mut lines);
     lines.push("--json prints the document.".to_owned());
     lines.join("\n")
 }
 
-fn members(around: &str, node: &Value, depth: usize, lines: &mut Vec<String>) {
+fn members(described: Option<Described<'_>>, node: &Value, depth: usize, lines: &mut Vec<String>) {
     for (name, value) in node.as_object().into_iter().flatten() {
         let indent = " ".repeat(depth * INDENT);
-        let title = name.replace('_', " ");
+        let (title, described) = (name.replace('_', " "), described.and_then(|part| part.member(name)));
         match value {
             Value::Object(_) => {
                 lines.push(format!("{indent}{title}"));
-                members(name, value, depth + 1, lines);
+                members(described, value, depth + 1, lines);
             }
             Value::Array(rows) if name == "warnings" => {
                 let message = |row: &Value| format!("{indent}warning: {}", row["message"].as_str().unwrap_or_default());
@@ -55,28 +66,29 @@ fn members(around: &str, node: &Value, depth: usize, lines: &mut Vec<String>) {
             }
             Value::Array(rows) if rows.len() == 1 && rows[0].is_object() => {
                 lines.push(format!("{indent}{title}"));
-                members(name, &rows[0], depth + 1, lines);
+                members(described, &rows[0], depth + 1, lines);
             }
             _ => {
                 let width = NAMES.saturating_sub(indent.len());
-                lines.push(format!("{indent}{title:width$} {}", text_of(&format!("{around}_{name}"), value)));
+                let unit = described.map_or("", Described::unit);
+                lines.push(format!("{indent}{title:width$} {}", text_of(unit, value)));
             }
         }
     }
 }
 
 /// A value in a line.
-fn text_of(name: &str, value: &Value) -> String {
+fn text_of(unit: &str, value: &Value) -> String {
     match value {
         Value::Null => "none".to_owned(),
-        Value::Number(number) if number.is_f64() => quantity(number.as_f64().unwrap_or(f64::NAN), unit(name)),
+        Value::Number(number) if number.is_f64() => quantity(number.as_f64().unwrap_or(f64::NAN), unit),
         Value::String(text) => text.clone(),
         Value::Array(all) => {
             let numbers = all.iter().filter_map(Value::as_f64);
             let [least, most] = [numbers.clone().reduce(f64::min), numbers.reduce(f64::max)];
             match least.zip(most) {
                 Some((least, most)) => {
-                    let [least, most] = [least, most].map(|value| quantity(value, unit(name)));
+                    let [least, most] = [least, most].map(|value| quantity(value, unit));
                     format!("{} values, {least} to {most}", all.len())
                 }
                 None if all.iter().all(Value::is_string) => {
@@ -87,10 +99,6 @@ fn text_of(name: &str, value: &Value) -> String {
         }
         other => other.to_string(),
     }
-}
-
-fn unit(name: &str) -> &'static str {
-    UNITS.iter().find(|(end, _)| name.ends_with(end)).map_or("", |(_, unit)| unit)
 }
 
 /// A number with six digits, and the prefix that fits its unit.
@@ -114,6 +122,7 @@ mod tests {
     use serde_json::json;
 
     use super::summary;
+    use crate::api;
 
     #[test]
     fn a_reply_is_said_in_words_and_numbers() {
@@ -125,7 +134,8 @@ mod tests {
             "accuracy": {"force_error": 1.234_567_89e-16},
             "warnings": [{"code": "rigid", "message": "one body is rigid"}],
         });
-        let text = summary(&reply);
+        let document = serde_json::from_str(api::document()).unwrap();
+        let text = summary(&reply, "/simulate", &document);
         for line in [
             "  contact radius                   93.2444 um",
             "  e star                           230.769 GPa",

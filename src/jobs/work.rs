@@ -104,7 +104,7 @@ impl Jobs {
         let points = to_usize(first)..to_usize(job.points.min(first + job.chunk));
         let pool = &self.common.pool;
         let bytes = sweep.bytes(pool.capacity().threads) + NUMBER * sweep.numbers(points.len());
-        let _held = pool.reserve_in_background(bytes).await?;
+        let _held = pool.reserve(bytes).await?;
         let Some(rows) = self.rows(claim, sweep, points.clone(), (job.tenant.clone(), lease)).await? else {
             return self.common.store.release(claim).await.map_err(store_error(claim.job));
         };

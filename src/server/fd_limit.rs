@@ -10,7 +10,7 @@ const OTHERS: usize = 128;
 /// Raises the limit for this many connections as far as the process may; returns how many it allows.
 pub fn room_for(connections: usize) -> usize {
     let besides = (SPARE_CONNECTIONS + OTHERS) as u64;
-    let wanted = connections as u64 + besides;
+    let wanted = (connections as u64).saturating_add(besides);
     let mut limit = getrlimit(Resource::Nofile);
     if limit.current.is_some_and(|current| current < wanted) {
         let raised = limit.maximum.map_or(wanted, |maximum| maximum.min(wanted));
@@ -19,6 +19,8 @@ pub fn room_for(connections: usize) -> usize {
             limit.current = Some(raised);
         }
     }
-    let room = limit.current.map_or(u64::MAX, |current| current.saturating_sub(besides).max(1));
+    // Of a low limit they leave a quarter.
+    let left = |current: u64| current.saturating_sub(besides).max(current / 4).max(1);
+    let room = limit.current.map_or(u64::MAX, left);
     connections.min(usize::try_from(room).unwrap_or(usize::MAX))
 }

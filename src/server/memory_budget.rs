@@ -23,12 +23,12 @@ pub const STREAM: u64 = 64 * KIB;
 /// The bound, bytes.
 pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, with_tls: bool) -> u64 {
     let connection = CONNECTION + if with_tls { TLS } else { 0 };
-    let requests = (capacity.requests + capacity.queue) as u64;
+    let requests = capacity.requests.saturating_add(capacity.queue) as u64;
     PROGRAM
         .saturating_add(cache)
         .saturating_add(capacity.reservable_bytes() as u64)
         .saturating_add(capacity.state_bytes() as u64)
-        .saturating_add(connection.saturating_mul((connections.most + SPARE_CONNECTIONS) as u64))
+        .saturating_add(connection.saturating_mul(connections.most.saturating_add(SPARE_CONNECTIONS) as u64))
         .saturating_add(REQUEST.saturating_mul(requests))
         .saturating_add(STREAM * STREAMS as u64)
 }

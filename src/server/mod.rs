@@ -16,16 +16,18 @@ use std::time::Duration;
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
 use hyper_util::rt::{TokioIo, TokioTimer};
+#[cfg(target_os = "linux")]
+use socket2::SockRef;
 use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::watch;
 use tokio::time::{Instant, sleep, sleep_until, timeout};
 
-use connection_limits::{BUFFER, GRACE, HEAD, PIECE, SPARE_TIME};
-use connections::{ConnectionCounts, ConnectionPermit, Socket};
+use connection_limits::{BUFFER, GRACE, HEAD, LAST_HEAD, PIECE, SPARE_TIME, UNSENT};
+use connections::{ConnectionCounts, ConnectionPermit, Late, Socket};
 use tls::Tls;
 
-pub use connections::{ConnectionLimiter, ConnectionLimits, OwnHosts, RequestClient, Service, network};
+pub use connections::{ConnectionLimiter, ConnectionLimits, OwnHosts, Service, network};
 
 /// How long to wait after a failure to accept a connection, most often because too many files are open.
 const ACCEPT_RETRY_DELAY: Duration = Duration::from_millis(50);
@@ -105,6 +107,11 @@ fn accept(
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!(%error, "TCP_NODELAY was refused");
     }
+    // Otherwise the socket's buffer takes megabytes at once, then nothing for as long as a slow client reads of them.
+    #[cfg(target_os = "linux")]
+    if let Err(error) = SockRef::from(&stream).set_tcp_notsent_lowat(UNSENT) {
+        tracing::debug!(%error, "TCP_NOTSENT_LOWAT was refused");
+    }
     let limits = limiter.limits;
     let limits = if permit.is_spare() { ConnectionLimits { head: SPARE_TIME, ..limits } } else { limits };
     let number = permit.number;
@@ -131,7 +138,7 @@ async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
     stream: S,
     peer: IpAddr,
     permit: ConnectionPermit,
-    limits: ConnectionLimits,
+    mut limits: ConnectionLimits,
     service: Arc<Service>,
     mut closing: watch::Receiver<()>,
 ) {
@@ -160,11 +167,18 @@ async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
                     break;
                 }
                 connection.as_mut().graceful_shutdown();
+                limits.head = limits.head.min(LAST_HEAD);
+                activity.restart_head();
+                check.set(sleep(limits.head));
             }
             () = check.as_mut() => match activity.next_check(&limits) {
-                Some(then) => check.set(sleep_until(then)),
-                None => {
-                    tracing::debug!("a client has taken too long, and its connection is closed");
+                Ok(then) => check.set(sleep_until(then)),
+                Err(Late::Head) => {
+                    tracing::debug!(client = %peer, "a client has taken too long for the head of a request");
+                    break;
+                }
+                Err(Late::Reply) => {
+                    tracing::info!(client = %peer, "a client has taken too long to read a reply: it is cut off");
                     break;
                 }
             },

@@ -283,7 +283,7 @@ impl Sessions {
             return Err(SessionError::OtherDefinition(id));
         }
         let (contact, sequence) = (live.contact.memory_bytes(), live.session.sequence);
-        let mut held = self.reserve_copy(&mut guard, contact).await?;
+        let held = self.reserve_copy(&mut guard, contact).await?;
         held.shrink(contact);
         stop.flag().charge(guard.loading);
         let live = guard.live.as_ref().ok_or(SessionError::NotFound(id))?;

@@ -29,8 +29,9 @@ impl OpenError {
 
     /// An error about a URL that may hold a password, which is therefore not shown.
     fn of(url: &str, why: impl Into<String>) -> OpenError {
-        let (kind, _) = url.split_once(':').unwrap_or((url, ""));
-        OpenError::new(format!("{kind}:"), why)
+        // What has no colon has no password.
+        let kind = url.split_once(':').map_or(url, |(kind, _)| kind);
+        OpenError::new(kind, why)
     }
 }
 

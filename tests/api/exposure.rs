@@ -25,16 +25,13 @@ fn refused(command: &mut Command) -> String {
 async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
     let folder = tempdir().unwrap();
     let log = folder.path().join("log");
-    let settings = folder.path().join("settings.toml");
-    std::fs::write(&settings, "listen = '0.0.0.0:0'\nstore = 'memory:'\n").unwrap();
     for address in ["0.0.0.0:0", "[::]:0", "192.0.2.1:8080", "[2001:db8::1]:80", "[::ffff:192.0.2.1]:80"] {
         let said = refused(&mut binary(&["--store", "memory:", "--listen", address]));
         assert!(said.contains(address) && said.contains("--keys") && said.contains("--insecure"), "{said}");
         let said = refused(binary(&["serve", "--store", "memory:"]).env("STICKSLIP_LISTEN", address));
         assert!(said.contains(address), "{said}");
     }
-    refused(&mut binary(&["--config", settings.to_str().unwrap()]));
-    refused(&mut binary(&["--config", settings.to_str().unwrap(), "--insecure=false"]));
+    refused(&mut binary(&["--store", "memory:", "--listen", "0.0.0.0:0", "--insecure=false"]));
     // Without any keys it does not start.
     let empty = folder.path().join("empty");
     std::fs::write(&empty, "# nobody yet\n").unwrap();
@@ -47,7 +44,6 @@ async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
     }
     let entry = new_key("a", &[Role::Read], "", None).unwrap().entry;
     std::fs::write(&empty, &entry).unwrap();
-    std::fs::write(&settings, "listen = '0.0.0.0:0'\nstore = 'memory:'\ninsecure = true\n").unwrap();
     let everywhere = ["--listen", "0.0.0.0:0", "--store", "memory:"];
     let with = |more: &[&str]| {
         let mut command = binary(&everywhere);
@@ -61,7 +57,6 @@ async fn without_keys_it_listens_on_loopback_only_unless_insecure() {
     for (command, keyed) in [
         (with(&["--insecure"]), false),
         (by_environment, false),
-        (with(&["--config", settings.to_str().unwrap()]), false),
         (with(&["--keys", empty.to_str().unwrap()]), true),
         (keys_in_environment, true),
     ] {
@@ -313,15 +308,9 @@ async fn no_secret_is_ever_logged_or_printed() {
     }
     // What is printed of settings, wherever they come from.
     let inline = format!("{},{}", good.entry, weak.entry);
-    let settings = folder.path().join("settings.toml");
-    std::fs::write(&settings, format!("store = '{url}'\nkeys = ['{}', '{}']\n", good.entry, weak.entry)).unwrap();
     let mut by_environment = binary(&["config"]);
     by_environment.envs([("STICKSLIP_STORE", url.as_str()), ("STICKSLIP_KEYS", inline.as_str())]);
-    for mut command in [
-        binary(&["config", "--store", &url, "--keys", &inline]),
-        by_environment,
-        binary(&["config", "--config", settings.to_str().unwrap()]),
-    ] {
+    for mut command in [binary(&["config", "--store", &url, "--keys", &inline]), by_environment] {
         let output = ended(&mut command);
         let printed = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();
         assert!(
@@ -351,11 +340,6 @@ async fn no_secret_is_ever_logged_or_printed() {
         vec!["--cors-origins", &url],
         vec!["--keys", &format!("{}\n{}x", weak.entry, good.entry)],
         vec!["--keys", &wrong("a", format!("{}\n{}\n", good.entry, good.key))],
-        vec!["--config", &wrong("b", format!("listen = '{url}'"))],
-        vec!["--config", &wrong("c", format!("stores = '{url}'"))],
-        vec!["--config", &wrong("d", format!("store = ['{url}']"))],
-        vec!["--config", &wrong("e", format!("keys = '{}\n", good.entry))],
-        vec!["--config", &wrong("f", format!("keys = {}\n", good.key))],
     ] {
         let output = ended(binary(&arguments).current_dir(folder.path()));
         let printed = String::from_utf8([output.stdout, output.stderr].concat()).unwrap();

@@ -262,9 +262,8 @@ async fn a_client_with_the_current_version_gets_304_until_the_contact_moves() {
         let tag = header(&first, "etag").to_owned();
         for known in [tag.clone(), format!("W/{tag}"), format!("\"other\", {tag}"), "*".to_owned()] {
             let response = server.send(Method::GET, &path, None, &[("if-none-match", &known)]).await;
-            // Weak to a client that has it so, from a compressed reply.
-            let expected = if known.starts_with("W/") { &known } else { &tag };
-            assert_eq!((response.status().as_u16(), header(&response, "etag")), (304, &expected[..]), "{path} {known}");
+            // Weak from a proxy that compresses.
+            assert_eq!((response.status().as_u16(), header(&response, "etag")), (304, &tag[..]), "{path} {known}");
             assert_eq!(header(&response, "cache-control"), "private, no-cache", "{path}");
             assert!(response.bytes().await.unwrap().is_empty());
         }

@@ -56,6 +56,10 @@ impl Process {
     /// Everything in its log so far.
     pub fn log(&self) -> String {
         let folder = self.folder.as_ref().expect("its log is not kept");
+        if self.child.is_some() {
+            // Lines gather for some milliseconds before they are written together.
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
         std::fs::read_to_string(folder.path().join("log")).unwrap()
     }
 

@@ -2,18 +2,18 @@
 //! decides where work runs.
 
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
-use std::pin::pin;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, mpsc};
 use std::time::Duration;
 
 use futures::future::join_all;
 use stickslip::admission::{
-    Capacity, Client, Deadline, INLINE, Kind, Pool, PoolError, Quota, QuotaLimits, Reservation, Stage,
+    Admission, Capacity, Class, Client, Deadline, FREE, INLINE, Kind, LARGEST, LARGEST_BODY, Pool, PoolError, Quota,
+    QuotaLimits, Reservation,
 };
 use stickslip_compute::simulation::Worker as _;
 use stickslip_compute::simulation::cost::Work;
-use stickslip_compute::{Interrupted, LONGEST_WORK, Nanoseconds, Stop as _};
+use stickslip_compute::{Interrupted, LONGEST_WORK, Nanoseconds, Stop as _, begin_work, processor_time};
 use stickslip_mechanics::profile::Cone;
 use stickslip_mechanics::{Profile, Sphere};
 use tokio::sync::Mutex as AsyncMutex;
@@ -22,12 +22,9 @@ use tokio::time::sleep;
 
 use crate::common::{PATIENCE, until};
 
-/// Bytes are reserved in units of this size.
-const UNIT: usize = 1024;
-
 fn small() -> Pool {
     let wait = Duration::from_millis(20);
-    Pool::new(Capacity { requests: 2, queue: 1, wait, bytes: 200 * UNIT, ..Capacity::default() })
+    Pool::new(Capacity { requests: 2, queue: 1, wait, ..Capacity::default() })
 }
 
 #[tokio::test]
@@ -41,71 +38,84 @@ async fn requests_beyond_the_capacity_wait_and_are_refused() {
     assert_eq!((pool.taken().requests, pool.taken().waiting), (0, 0));
 }
 
+/// Two places for large requests and sixteen for others.
+fn classes() -> Pool {
+    Pool::new(Capacity { wait: Duration::from_millis(20), ..Capacity::default() })
+}
+
 #[tokio::test]
-async fn bytes_are_reserved_once() {
-    let pool = small();
-    let mut first = pool.reserve(80 * UNIT).await.unwrap();
-    let second = pool.reserve(90 * UNIT).await.unwrap();
-    // The reserve is as large as all that there is, and for one at a time.
-    let turn = pool.reserve(60 * UNIT).await.unwrap();
-    assert_eq!(pool.reserve(60 * UNIT).await.unwrap_err(), PoolError::Busy);
-    pool.resize(&mut first, 30 * UNIT).await.unwrap();
-    assert_eq!(pool.taken().bytes, 180 * UNIT);
-    let third = pool.reserve(60 * UNIT).await.unwrap();
-    assert_eq!(pool.resize(&mut first, 60 * UNIT).await.unwrap_err(), PoolError::Busy);
-    assert_eq!(pool.taken().bytes, 240 * UNIT);
-    drop(turn);
-    // Whoever has the turn finds all that it asks for.
-    pool.resize(&mut first, 60 * UNIT).await.unwrap();
-    pool.resize(&mut first, 1_000 * UNIT).await.unwrap();
-    assert_eq!(pool.taken().bytes, 350 * UNIT);
-    // It gives up the turn as soon as there is as much beside it.
-    drop((second, third));
-    pool.resize(&mut first, 150 * UNIT).await.unwrap();
-    let other = pool.reserve(200 * UNIT).await.unwrap();
-    assert_eq!(pool.taken().bytes, 350 * UNIT);
-    drop((first, other));
+async fn no_client_has_more_than_half_of_a_class() {
+    let pool = classes();
+    let take = |who: u8, bytes| {
+        client(who).serve({
+            let pool = pool.clone();
+            async move { pool.reserve(bytes).await }
+        })
+    };
+    let first = take(1, LARGEST_BODY + 1).await.unwrap();
+    assert_eq!(take(1, LARGEST).await.unwrap_err(), PoolError::Busy);
+    let second = take(2, LARGEST).await.unwrap();
+    assert_eq!(take(3, LARGEST).await.unwrap_err(), PoolError::Busy);
+    let mine: Vec<_> = join_all((0..8).map(|_| take(1, FREE + 1))).await.into_iter().collect::<Result<_, _>>().unwrap();
+    assert_eq!(take(1, FREE + 1).await.unwrap_err(), PoolError::Busy);
+    // What needs no place waits for none.
+    assert!(take(1, FREE).await.is_ok());
+    assert!(take(2, LARGEST_BODY).await.is_ok());
+    assert_eq!(pool.taken().bytes, 2 * LARGEST + 8 * LARGEST_BODY);
+    drop((first, second, mine));
     assert_eq!(pool.taken().bytes, 0);
 }
 
 #[tokio::test]
-async fn small_needs_do_not_wait_behind_large_ones() {
-    let pool = Pool::new(Capacity { bytes: 200 * UNIT, ..Capacity::default() });
-    let small = 20 * UNIT;
-    let first = pool.reserve(150 * UNIT).await.unwrap();
-    let turn = pool.reserve(100 * UNIT).await.unwrap();
-    let mut large = pin!(pool.reserve(100 * UNIT));
-    assert!(futures::poll!(large.as_mut()).is_pending());
-    let mut beside = pool.reserve(small).await.unwrap();
-    // They have a share, and no more.
-    let mut next = pin!(pool.reserve(small));
-    assert!(futures::poll!(next.as_mut()).is_pending());
-    assert!(pool.taken().bytes <= pool.capacity().reservable_bytes());
-    pool.resize(&mut beside, 0).await.unwrap();
-    let next = next.await.unwrap();
-    drop((first, turn));
-    let large = large.await.unwrap();
-    assert_eq!(pool.taken().bytes, 120 * UNIT);
-    // What is reserved in both ways is one.
-    let mut both = next;
-    both.add(pool.try_reserve(30 * UNIT).unwrap());
-    pool.resize(&mut both, 25 * UNIT).await.unwrap();
-    assert_eq!(pool.taken().bytes, 125 * UNIT);
-    drop((both, large));
-    assert_eq!(pool.taken().bytes, 0);
+async fn a_reservation_becomes_smaller_when_there_is_room_and_its_clones_with_it() {
+    let pool = classes();
+    let mut large = pool.reserve(LARGEST).await.unwrap();
+    let mut same = large.clone();
+    let all: Vec<_> = (0..16).filter_map(|who| client(who).within(|| pool.try_reserve(LARGEST_BODY))).collect();
+    assert_eq!(all.len(), 16);
+    // The other class is full.
+    pool.resize(&mut same, LARGEST_BODY).await.unwrap();
+    assert_eq!(large.class(), Some(Class::Large));
+    drop(all);
+    pool.resize(&mut same, LARGEST_BODY).await.unwrap();
+    assert_eq!((large.class(), large.bytes()), (Some(Class::Medium), LARGEST_BODY));
+    pool.resize(&mut large, FREE).await.unwrap();
+    assert_eq!((same.class(), pool.taken().bytes), (None, 0));
 }
 
-/// What a request does one after the other: its body arrives and doubles, it gets its permit, is parsed, asks for what
-/// its work takes, locks its contact, and loads it.
+/// Work that nobody waits for any more owns what its request holds.
+#[tokio::test]
+async fn work_that_outlives_its_request_keeps_its_memory_until_it_ends() {
+    let pool = classes();
+    let (release, held) = mpsc::channel::<()>();
+    let under_way = Admission::begin(&pool, client(1), None);
+    let (admission, busy) = (Arc::clone(under_way.admission()), pool.clone());
+    pool.resize(&mut admission.memory.clone(), LARGEST).await.unwrap();
+    let work = move || held.recv().is_ok();
+    let asked = tokio::spawn(admission.serve(async move { busy.run(2 * INLINE, work).await }));
+    until("it has a thread", async || (pool.meters().running.get() == 1).then_some(())).await;
+    asked.abort();
+    assert!(asked.await.is_err());
+    let stop = under_way.admission().deadline.clone();
+    drop(under_way);
+    assert_eq!(stop.check(), Err(Interrupted::Abandoned));
+    assert_eq!(pool.taken().bytes, LARGEST);
+    release.send(()).unwrap();
+    until("it has ended", async || (pool.taken().bytes == 0).then_some(())).await;
+}
+
+/// What a request does one after the other: its body arrives, it gets its permit, is parsed, asks for what its work
+/// takes, locks its contact, and loads it.
 async fn request(pool: &Pool, locks: &[AsyncMutex<()>], number: usize) -> Result<(), PoolError> {
-    let need = |stage: usize| UNIT * (20 + (number * 37 + stage * 53) % 180);
+    let need = |stage: usize| (number * 37 + stage * 53) % 200 * (LARGEST / 190);
     let pause = async || sleep(Duration::from_millis(1)).await;
     let mut memory = Reservation::default();
-    for bytes in [need(0) / 4, need(0) / 2, need(0)] {
-        pool.resize_in(Stage::Body, &mut memory, bytes).await?;
-        pause().await;
-    }
+    let small = pool.reserve_arriving(need(0)).await?;
+    pause().await;
+    pool.resize(&mut memory, need(0).min(LARGEST_BODY)).await?;
+    pause().await;
     let _permit = pool.admit_request().await?;
+    drop(small);
     for stage in 1..4 {
         pool.resize(&mut memory, need(stage)).await?;
         pause().await;
@@ -121,9 +131,10 @@ async fn request(pool: &Pool, locks: &[AsyncMutex<()>], number: usize) -> Result
 #[tokio::test]
 async fn requests_never_wait_for_each_other_in_a_circle() {
     for requests in [1, 2, 3, 50] {
-        let pool = Pool::new(Capacity { requests, bytes: 200 * UNIT, wait: PATIENCE, ..Capacity::default() });
+        let pool = Pool::new(Capacity { requests, wait: PATIENCE, ..Capacity::default() });
         let locks = [const { AsyncMutex::const_new(()) }; 3];
-        let all = join_all((0..80).map(|number| request(&pool, &locks, number))).await;
+        let all = (0..80).map(|number| client(number as u8 % 7).serve(request(&pool, &locks, number)));
+        let all = join_all(all).await;
         assert_eq!(all.iter().filter(|done| done.is_err()).count(), 0, "{requests} at a time");
         assert_eq!((pool.taken().bytes, pool.taken().waiting), (0, 0));
     }
@@ -138,12 +149,30 @@ fn work_ends_with_the_guard() {
 }
 
 #[test]
-fn the_time_limit_runs_from_the_first_check() {
-    let allowed = Duration::from_millis(20);
+fn the_time_limit_is_of_processor_time_from_the_first_check() {
+    let busy = |time: Duration| {
+        let begin = processor_time();
+        while processor_time() - begin < time {}
+    };
+    let allowed = Duration::from_millis(50);
     let (stop, _guard) = Deadline::within(allowed, Duration::ZERO);
+    begin_work();
+    busy(2 * allowed);
+    assert_eq!(stop.check(), Ok(()));
+    // What waits takes none.
     std::thread::sleep(2 * allowed);
     assert_eq!(stop.check(), Ok(()));
-    std::thread::sleep(2 * allowed);
+    // Another piece of work for the same request, on another thread.
+    let spent = std::thread::scope(|scope| {
+        let other = || {
+            stop.check().unwrap();
+            busy(allowed / 2);
+            stop.check()
+        };
+        scope.spawn(other).join().unwrap()
+    });
+    assert_eq!(spent, Ok(()));
+    busy(allowed);
     assert_eq!(stop.check(), Err(Interrupted::TimeLimit(allowed)));
 }
 

@@ -32,10 +32,11 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
     let with = |body: &[u8]| [body, HIDDEN].concat();
     vec![
         // Two lengths, of which a proxy may believe the other.
+        // Here the coding counts (RFC 9112, 6.3), the body is empty, and the connection ends after it.
         ("length, then coding", simulate(&["Content-Length: 5", chunked], &with(b"0\r\n\r\n")), 400),
         ("coding, then length", simulate(&[chunked, "Content-Length: 5"], &with(b"0\r\n\r\n")), 400),
         ("two lengths", simulate(&["Content-Length: 5", "Content-Length: 6"], b"{} {}x"), 400),
-        ("the same length twice", simulate(&["Content-Length: 2", "Content-Length: 2"], &with(b"{}")), 400),
+        ("chunks are not the last coding", simulate(&["Transfer-Encoding: chunked, gzip"], &with(b"0\r\n\r\n")), 400),
         ("a list of lengths", simulate(&["Content-Length: 2, 2"], b"{}"), 400),
         ("a length with a sign", simulate(&["Content-Length: +2"], b"{}"), 400),
         ("a negative length", simulate(&["Content-Length: -2"], b"{}"), 400),
@@ -44,7 +45,6 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         ("the largest length", simulate(&["Content-Length: 18446744073709551615"], b"{}"), 431),
         ("two codings", simulate(&[chunked, "Transfer-Encoding: identity"], &with(b"0\r\n\r\n")), 400),
         ("an unknown coding", simulate(&["Transfer-Encoding: xchunked"], b"0\r\n\r\n"), 400),
-        ("a coding below the chunks", simulate(&["Transfer-Encoding: gzip, chunked"], &with(b"0\r\n\r\n")), 400),
         ("a hidden coding", simulate(&["Transfer-Encoding:\x0bchunked"], &with(b"0\r\n\r\n")), 400),
         (
             "a coding in an old version",
@@ -62,8 +62,6 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         ),
         // Lines that two readers end in different places.
         ("a folded header", head(&["GET /healthz HTTP/1.1", "Host: localhost", "A: b", " c"]), 400),
-        ("bare line feeds", b"GET /healthz HTTP/1.1\nHost: localhost\n\n".to_vec(), 400),
-        ("one bare line feed", b"GET /healthz HTTP/1.1\r\nHost: localhost\nA: b\r\n\r\n".to_vec(), 400),
         ("a bare carriage return", head(&["GET /healthz HTTP/1.1", "Host: localhost\rA: b"]), 400),
         ("a zero byte in a header", head(&["GET /healthz HTTP/1.1", "Host: localhost", "A: b\0c"]), 400),
         ("a space before the colon", head(&["GET /healthz HTTP/1.1", "Host : x"]), 400),
@@ -79,6 +77,12 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
             simulate(&["Idempotency-Key: a", "Idempotency-Key: b", "Content-Length: 2"], b"{}"),
             400,
         ),
+        (
+            "two conditions",
+            head(&["DELETE /contacts/7 HTTP/1.1", "Host: x", "If-Match: \"1\"", "If-Match: \"2\""]),
+            400,
+        ),
+        ("two events", head(&["GET /contacts/7 HTTP/1.1", "Host: x", "Last-Event-ID: 1", "Last-Event-ID: 2"]), 400),
         // Too much of it.
         ("a long header", head(&["GET /healthz HTTP/1.1", &format!("A: {}", "b".repeat(100_000))]), 431),
         ("many headers", head(&[&["GET /healthz HTTP/1.1"], vec!["A: b"; 200].as_slice()].concat()), 431),
@@ -92,7 +96,7 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         // Versions and methods.
         ("the first version", b"GET /healthz\r\n\r\n".to_vec(), 400),
         ("a version to come", line("GET /healthz HTTP/1.7"), 400),
-        ("the next version", b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n".to_vec(), 400),
+        ("the next version", b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n".to_vec(), 0),
         ("TRACE", line("TRACE /healthz HTTP/1.1"), 405),
         ("CONNECT", line("CONNECT x:443 HTTP/1.1"), 403),
         ("OPTIONS of everything", line("OPTIONS * HTTP/1.1"), 404),
@@ -112,6 +116,7 @@ fn cases() -> Vec<(&'static str, Vec<u8>, u16)> {
         // Bodies.
         ("a compressed body", simulate(&["Content-Encoding: gzip", "Content-Length: 2"], b"\x1f\x8b"), 415),
         ("a body compressed twice", simulate(&["Content-Encoding: br, gzip", "Content-Length: 2"], b"\x1f\x8b"), 415),
+        ("more than a body may have", simulate(&["Content-Length: 9000000"], b"{}"), 413),
         ("half a body", simulate(&["Content-Length: 20"], b"{\"contact\":"), 408),
         ("half a chunk", simulate(&[chunked], b"ff\r\n{\"contact\":"), 408),
         // No HTTP at all.

@@ -13,4 +13,6 @@ mod overload;
 mod profiles;
 mod quotas;
 mod searches;
+mod signals;
+mod slow_clients;
 mod stops;

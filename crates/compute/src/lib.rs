@@ -20,7 +20,7 @@ pub mod simulation;
 mod stop;
 
 pub use refusal::Refusal;
-pub use stop::{Flag, Interrupted, LONGEST_WORK, Part, Stop};
+pub use stop::{Flag, Interrupted, LONGEST_WORK, Part, Stop, begin_work, processor_time};
 
 /// Estimated work, nanoseconds.
 pub type Nanoseconds = u64;

@@ -1,6 +1,6 @@
 //! Whom long work asks whether to go on: cancellation and time limits.
 
-use std::sync::OnceLock;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
@@ -24,10 +24,8 @@ pub trait Stop: Send + Sync {
     /// The flag that ends the work, and the times that have been counted for it.
     fn flag(&self) -> &Flag;
 
-    /// Lets other work go first where it shares the threads; returns how long that took.
-    fn yield_slot(&self) -> Duration {
-        Duration::ZERO
-    }
+    /// Lets other work go first where it shares the threads.
+    fn yield_slot(&self) {}
 
     /// Ends the work if the flag is raised.
     ///
@@ -35,16 +33,59 @@ pub trait Stop: Send + Sync {
     /// [`Interrupted::Abandoned`] if no client waits for the result any more, [`Interrupted::TimeLimit`] if the time is
     /// up.
     fn check(&self) -> Result<(), Interrupted> {
-        self.check_after(self.yield_slot())
+        self.yield_slot();
+        self.check_after(worked())
     }
 
-    /// As [`Stop::check`], after the work has just yielded for this time.
+    /// As [`Stop::check`], after so much more processor time for this work.
     ///
     /// # Errors
     /// As [`Stop::check`].
-    fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {
-        self.flag().check_after(waited)
+    fn check_after(&self, worked: Duration) -> Result<(), Interrupted> {
+        self.flag().check_after(worked)
     }
+}
+
+/// How long work goes on before its processor time is read again: a call of the system, while a look at the clock is
+/// none.
+const INTERVAL: Duration = Duration::from_millis(1);
+
+thread_local! {
+    /// When the processor time of this thread was last counted for its work, and what it was then.
+    static COUNTED: Cell<Option<(Instant, Duration)>> = const { Cell::new(None) };
+}
+
+/// Work begins on this thread: what the thread has done before is none of it. It counts from its first check on.
+pub fn begin_work() {
+    COUNTED.set(None);
+}
+
+/// The processor time of this thread since it was last counted.
+fn worked() -> Duration {
+    let (now, counted) = (Instant::now(), COUNTED.get());
+    if counted.is_some_and(|(last, _)| now.duration_since(last) < INTERVAL) {
+        return Duration::ZERO;
+    }
+    let time = processor_time();
+    COUNTED.set(Some((now, time)));
+    counted.map_or(Duration::ZERO, |(_, last)| time.saturating_sub(last))
+}
+
+/// The processor time of this thread.
+#[cfg(unix)]
+pub fn processor_time() -> Duration {
+    use rustix::time::{ClockId, clock_gettime};
+
+    Duration::try_from(clock_gettime(ClockId::ThreadCPUTime)).unwrap_or_default()
+}
+
+/// The time of this thread, where the system is not asked for its processor time.
+#[cfg(not(unix))]
+pub fn processor_time() -> Duration {
+    thread_local! {
+        static BEGIN: Instant = Instant::now();
+    }
+    BEGIN.with(Instant::elapsed)
 }
 
 /// A flag that is raised by another thread, or once the allowed work is used up. The default flag has no time limit.
@@ -52,11 +93,7 @@ pub trait Stop: Send + Sync {
 pub struct Flag {
     raised: AtomicBool,
     allowed: Option<Duration>,
-    // Set by the first check: the time that a request has waited for a thread does not count.
-    started: OnceLock<Instant>,
-    // Nanoseconds for which the work has yielded to others since, which do not count either.
-    waited: AtomicU64,
-    // Nanoseconds of work for the same request under other flags that counts for the time limit.
+    // Nanoseconds of processor time that count for the time limit: what waits for a thread, or yields, takes none.
     spent: AtomicU64,
     // Nanoseconds of all work for it before, under flags of its own.
     before: AtomicU64,
@@ -96,26 +133,18 @@ impl Flag {
         Duration::from_nanos(self.before.load(Ordering::Relaxed))
     }
 
-    /// How long the work has yielded to others.
-    pub fn waited(&self) -> Duration {
-        Duration::from_nanos(self.waited.load(Ordering::Relaxed))
-    }
-
-    fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {
+    fn check_after(&self, worked: Duration) -> Result<(), Interrupted> {
         if self.raised.load(Ordering::Relaxed) {
             return Err(Interrupted::Abandoned);
         }
-        if !waited.is_zero() {
-            self.waited.fetch_add(waited.as_nanos() as u64, Ordering::Relaxed);
-        }
         let Some(allowed) = self.allowed else { return Ok(()) };
-        let Some(started) = self.started.get() else {
-            self.started.get_or_init(|| Instant::now().checked_sub(waited).unwrap_or_else(Instant::now));
-            return Ok(());
+        let worked = worked.as_nanos() as u64;
+        let before = if worked > 0 {
+            self.spent.fetch_add(worked, Ordering::Relaxed)
+        } else {
+            self.spent.load(Ordering::Relaxed)
         };
-        let spent = Duration::from_nanos(self.spent.load(Ordering::Relaxed));
-        let worked = (spent + started.elapsed()).saturating_sub(self.waited());
-        if worked >= allowed { Err(Interrupted::TimeLimit(allowed)) } else { Ok(()) }
+        if Duration::from_nanos(before + worked) >= allowed { Err(Interrupted::TimeLimit(allowed)) } else { Ok(()) }
     }
 }
 
@@ -130,12 +159,12 @@ impl<S: Stop + ?Sized> Stop for &S {
         (**self).flag()
     }
 
-    fn yield_slot(&self) -> Duration {
-        (**self).yield_slot()
+    fn yield_slot(&self) {
+        (**self).yield_slot();
     }
 
-    fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {
-        (**self).check_after(waited)
+    fn check_after(&self, worked: Duration) -> Result<(), Interrupted> {
+        (**self).check_after(worked)
     }
 }
 
@@ -158,12 +187,12 @@ impl<S: Stop> Stop for Part<S> {
         &self.flag
     }
 
-    fn yield_slot(&self) -> Duration {
-        self.whole.yield_slot()
+    fn yield_slot(&self) {
+        self.whole.yield_slot();
     }
 
-    fn check_after(&self, waited: Duration) -> Result<(), Interrupted> {
-        self.whole.check_after(waited)?;
-        self.flag.check_after(waited)
+    fn check_after(&self, worked: Duration) -> Result<(), Interrupted> {
+        self.whole.check_after(worked)?;
+        self.flag.check_after(worked)
     }
 }

@@ -1,53 +1,45 @@
 //! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change
 //! says who made it.
 
-use std::net::IpAddr;
+use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Instant;
 
 use axum::body::Body;
 use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
+use futures::{FutureExt as _, StreamExt as _};
+use http_body::Body as _;
 use stickslip_wire::ProblemDocument;
-use tokio::sync::watch;
 use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
 use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use uuid::Uuid;
 
 use crate::access::Role;
-use crate::admission::Pool;
 use crate::api;
-use crate::api::middleware::access_control::Caller;
+use crate::api::middleware::access_control::revoked;
 use crate::api::middleware::{compression, security_headers};
 use crate::api::problem::{Code, MEDIA_TYPE, Problem};
+use crate::api::request_context::{REQUEST_ID, Reception, RequestContext};
 use crate::api::request_limits;
-use crate::api::request_metrics::{ABANDONED, Endpoint, NONE, RequestMetrics};
-use crate::api::resources::page;
+use crate::api::request_metrics::{ABANDONED, NONE};
+use crate::api::resources::{meta, page};
 use crate::metrics::Counted;
 use crate::otlp;
-use crate::server::RequestClient;
-use crate::server::connections::Refusal;
-
-/// The header with the identifier of a request, both ways.
-pub const REQUEST_ID: HeaderName = HeaderName::from_static("x-request-id");
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
     start: Instant,
-    id: &'a str,
+    context: &'a RequestContext,
     /// What the client says that the request is a part of, for traces.
     traceparent: Option<&'a str>,
     method: &'a Method,
     route: Option<&'a str>,
-    client: Option<IpAddr>,
-    caller: Caller,
     /// The contact that it would change.
     contact: Option<Uuid>,
-    metrics: &'a RequestMetrics,
-    endpoint: Endpoint<'a>,
     span: Span,
     outcome: Outcome,
 }
@@ -60,65 +52,39 @@ struct Outcome {
     cause: Option<String>,
 }
 
-/// What all requests share: their metrics, the pool, and whether those that are not done are refused.
-pub type Observed = (Arc<RequestMetrics>, Pool, watch::Receiver<bool>);
-
-/// Logs a request and compresses its reply: one layer, because each such layer puts the request and its answer into a
-/// box.
-pub async fn observe(State((metrics, pool, stops)): State<Observed>, request: Request, next: Next) -> Response {
-    let client = compression::Client::of(request.headers());
-    let response = log_request(&metrics, stops, request, next).await;
-    compression::compress(response, client, &pool).await
-}
-
-/// Serves a request, and adds what is common to every reply.
-async fn log_request(
-    metrics: &Arc<RequestMetrics>,
-    mut stops: watch::Receiver<bool>,
-    mut request: Request,
-    next: Next,
-) -> Response {
+/// Serves a request, from its head to the head of its reply: makes its context, has it admitted and answered, and adds
+/// what is common to every reply. One layer, because each puts the request and its answer into a box.
+pub async fn serve(State(reception): State<Arc<Reception>>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
-    let request_id = request_id(request.headers());
-    let id = request_id.to_str().unwrap_or_default();
-    let method = request.method().clone();
-    let part_of = request.headers().get("traceparent");
-    let traceparent = part_of.filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
     let route = request.extensions().get::<MatchedPath>().cloned();
     let route = route.as_ref().map(MatchedPath::as_str);
-    if route == Some("/metrics") {
-        request.extensions_mut().insert(Arc::clone(metrics));
-    }
-    let endpoint = metrics.endpoint(route, &method);
-    let in_flight = metrics.in_flight(endpoint);
-    let _in_flight = Counted::by(&in_flight);
+    let (context, under_way) = RequestContext::of(&reception, &request, route);
+    let _in_flight = Counted::by(&context.meters.in_flight);
+    let method = request.method().clone();
+    let part_of = request.headers().get("traceparent");
+    let traceparent = part_of.filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
+    let accepted = compression::accepted(request.headers());
     let changes = !matches!(method, Method::GET | Method::HEAD | Method::OPTIONS);
     let mut guard = RequestGuard {
         start,
-        id,
+        context: &context,
         traceparent: traceparent.as_ref().and_then(|value| value.to_str().ok()),
         method: &method,
         route,
-        client: request.extensions().get::<RequestClient>().map(|client| client.address),
-        caller: Caller::default(),
         contact: contact_in(request.uri().path()).filter(|_| changes),
-        metrics,
-        endpoint,
-        span: span(&request, route.unwrap_or(NONE), id),
+        span: span(&request, route.unwrap_or(NONE), context.id.to_str().unwrap_or_default()),
         outcome: Outcome { status: ABANDONED, code: None, cause: None },
     };
-    request.extensions_mut().insert(Caller::clone(&guard.caller));
-    let span = guard.span.clone();
+    request.extensions_mut().insert(Arc::clone(&context));
+    let mut stops = reception.stops.clone();
     let answer = async {
-        match request.extensions_mut().remove::<Refusal>() {
-            Some(refusal) => Problem::from(refusal).into_response(),
-            None => next.run(request).instrument(span).await,
-        }
+        if reception.crosses_origins { next.run(request).await } else { admitted(&reception, request, next).await }
     };
+    let answer = AssertUnwindSafe(answer.instrument(guard.span.clone())).catch_unwind();
     let mut response = tokio::select! {
         biased;
-        response = answer => response,
+        answered = answer => answered.unwrap_or_else(meta::panicked),
         // Otherwise the service has been stopped.
         Ok(_) = stops.wait_for(|stops| *stops) => {
             Problem::in_doubt(Code::Stopping, "the server stops before this request is done").into_response()
@@ -132,7 +98,7 @@ async fn log_request(
     if let Some(problem) = problem {
         (outcome.code, outcome.cause) = (Some(problem.code().as_str()), problem.cause().map(str::to_owned));
         let changes = api::need(method.as_str(), route.unwrap_or_default()) == Some(Role::Write);
-        let document = problem.document(id, changes);
+        let document = problem.document(context.id.to_str().unwrap_or_default(), changes);
         outcome.status = document.status;
         response = with_document(response, document);
     }
@@ -144,20 +110,49 @@ async fn log_request(
     security_headers::protect(response.headers_mut(), &method, kind);
     guard.outcome = outcome;
     drop(guard);
-    response.headers_mut().insert(REQUEST_ID, request_id);
+    response.headers_mut().insert(REQUEST_ID, context.id.clone());
+    if context.admission.memory.class().is_some()
+        && let Some(length) = response.body().size_hint().exact()
+    {
+        // What the reply was made of is gone. Its text may have grown by doubling.
+        let kept = usize::try_from(length).unwrap_or(usize::MAX).saturating_mul(2);
+        // Shrinking is never refused.
+        let _ = context.reserve(kept).await;
+    }
+    response = compression::compress(response, accepted, &reception.pool, &context.admission).await;
+    response.extensions_mut().insert(under_way);
     response
 }
 
-/// The identifier of the request with these headers: its own if that is printable and not too long, else a new one.
-fn request_id(headers: &HeaderMap) -> HeaderValue {
-    let sound = |id: &&HeaderValue| {
-        (1..=request_limits::REQUEST_ID_LENGTH).contains(&id.len()) && id.as_bytes().iter().all(u8::is_ascii_graphic)
+/// Serves a request within pages of other origins, whose preflight requests have been answered before.
+pub async fn serve_across(State(reception): State<Arc<Reception>>, request: Request, next: Next) -> Response {
+    admitted(&reception, request, next).await
+}
+
+/// Serves a request that is not refused, once it has its permit; one with a body gets that when the body has arrived.
+/// Events end with the key.
+async fn admitted(reception: &Reception, request: Request, next: Next) -> Response {
+    let Some(context) = request.extensions().get::<Arc<RequestContext>>().cloned() else {
+        return Problem::internal("a request came without its context").into_response();
     };
-    headers.get(REQUEST_ID).filter(sound).cloned().unwrap_or_else(|| {
-        let mut text = Uuid::encode_buffer();
-        HeaderValue::from_str(Uuid::now_v7().hyphenated().encode_lower(&mut text))
-            .unwrap_or(HeaderValue::from_static("-"))
-    })
+    if let Some(problem) = &context.refusal {
+        return problem.clone().into_response();
+    }
+    let admission = &context.admission;
+    if context.waits_at_door
+        && let Err(refused) = admission.admit(&reception.pool).await
+    {
+        return Problem::from(refused).into_response();
+    }
+    let response = Arc::clone(admission).serve(next.run(request)).await;
+    let kind = response.headers().get(header::CONTENT_TYPE);
+    if !kind.is_some_and(|kind| kind.as_bytes().starts_with(b"text/event-stream")) {
+        return response;
+    }
+    admission.become_endless();
+    let (Some(keys), Some(holder)) = (reception.keys.clone(), context.holder.clone()) else { return response };
+    let end = Box::pin(revoked(keys, holder));
+    response.map(|body| Body::from_stream(body.into_data_stream().take_until(end)))
 }
 
 fn contact_in(path: &str) -> Option<Uuid> {
@@ -191,19 +186,20 @@ fn span(request: &Request, route: &str, id: &str) -> Span {
 
 impl Drop for RequestGuard<'_> {
     fn drop(&mut self) {
-        let RequestGuard { id: request_id, traceparent, method, client, contact, .. } = *self;
+        let RequestGuard { context, traceparent, method, contact, .. } = *self;
         let Outcome { status, code, ref cause } = self.outcome;
         let (time, cause) = (self.start.elapsed(), cause.as_deref());
-        self.metrics.answered(self.endpoint, status, time);
+        context.meters.answered(status, time);
         self.span.record("http.response.status_code", status);
         self.span.record("error.type", code);
         if status >= 500 {
             self.span.record("otel.status_code", "ERROR");
             self.span.record("otel.status_description", cause);
         }
+        let request_id = context.id.to_str().unwrap_or_default();
         let (route, duration_ms) = (self.route.unwrap_or(NONE), time.as_secs_f64() * 1e3);
-        let (client, contact) = (client.map(display), contact.map(display));
-        let (key, tenant) = self.caller.get().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
+        let (client, contact) = (context.address.map(display), contact.map(display));
+        let (key, tenant) = context.holder.as_ref().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
         /// The fields that all lines have, and more.
         macro_rules! line {
             ($level:ident, $($more:ident,)* $message:literal) => {

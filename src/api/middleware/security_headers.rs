@@ -5,7 +5,7 @@ use std::time::Duration;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, Uri, header};
 use tower_http::cors::CorsLayer;
 
-use crate::api::middleware::request_log::REQUEST_ID;
+use crate::api::request_context::REQUEST_ID;
 
 /// How long a browser may cache a CORS preflight reply.
 const REMEMBERED: Duration = Duration::from_secs(600);

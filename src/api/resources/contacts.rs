@@ -53,11 +53,12 @@ parameters! {
 )]
 pub async fn list_contacts(
     TenantApp(app): TenantApp,
+    Context(context): Context,
     CheckedQuery(ListQuery { label, order, after, limit }): CheckedQuery<ListQuery>,
 ) -> Result<Response, Problem> {
-    let memory = app.pool.reserve(limit * SUMMARY_BYTES).await?;
+    context.reserve(limit * SUMMARY_BYTES).await?;
     let page = app.sessions.list(label, Page { order, after, limit }).await?;
-    Ok(reply::holding(reply::json(reply::written(&page)?), memory))
+    Ok(reply::json(reply::written(&page)?))
 }
 
 /// Get a contact
@@ -70,7 +71,7 @@ pub async fn list_contacts(
             in quotes"))))
 )]
 pub async fn get_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     headers: HeaderMap,
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
@@ -96,7 +97,7 @@ fn tag(sequence: u64, label: Option<&str>) -> String {
             in quotes"))))
 )]
 pub async fn rename_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<RenameRequest>,
 ) -> Result<Response, Problem> {
@@ -114,7 +115,7 @@ pub async fn rename_contact(
     responses((status = 204, description = "The contact is deleted"))
 )]
 pub async fn delete_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     IfMatch { expected }: IfMatch,
 ) -> Result<StatusCode, Problem> {
     app.sessions.delete(id, expected).await?;
@@ -129,9 +130,14 @@ pub async fn delete_contact(
     get, path = "/contacts/{id}/definition", tag = "contacts", params(ContactPath),
     responses((status = 200, description = "Profile, material, friction and preload", body = ContactDefinition))
 )]
-pub async fn get_definition(ContactPath { app, id }: ContactPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
+pub async fn get_definition(
+    ContactPath { app, id, context }: ContactPath,
+    _: CheckedQuery<()>,
+) -> Result<Response, Problem> {
     let (body, memory) = app.sessions.definition(id).await?;
-    Ok(reply::holding(reply::json(body), memory))
+    // What it took for the work is what its reply takes, which holds it from now on.
+    context.reserve(memory.bytes()).await?;
+    Ok(reply::json(body))
 }
 
 /// Fork a contact
@@ -147,7 +153,7 @@ pub async fn get_definition(ContactPath { app, id }: ContactPath, _: CheckedQuer
     )))
 )]
 pub async fn fork_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     request: CheckedBody<ForkRequest, true>,
 ) -> Result<Response, Problem> {
     Ok(reply::of_change(app.sessions.fork(id, request.body, request.key).await?))

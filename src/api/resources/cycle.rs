@@ -40,7 +40,7 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_steady_cycle(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, context }: ContactPath,
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<CycleQuery>,
 ) -> Result<Response, Problem> {
@@ -61,5 +61,5 @@ pub async fn get_steady_cycle(
     let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });
     let mut faults = Faults::default();
     let task = CycleTask::of_query(drive, machine_stiffness, harmonics, density, &mut faults);
-    computations::get_of_contact(&app, id, &headers, format?, faults.done(task)?).await
+    computations::get_of_contact(&app, id, &headers, format?, faults.done(task)?, &context).await
 }

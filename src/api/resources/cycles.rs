@@ -5,6 +5,8 @@ use stickslip_wire::{Cycle, CyclePage, limits};
 
 use super::move_series::curve;
 use super::prelude::*;
+use crate::admission::Deadline;
+use stickslip_compute::Stop as _;
 use stickslip_compute::formats::{CAPACITY, Column, Table};
 use stickslip_compute::simulation::bytes::OBJECT;
 
@@ -25,7 +27,7 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_cycles(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, context }: ContactPath,
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<CyclesQuery>,
 ) -> Result<Response, Problem> {
@@ -33,13 +35,15 @@ pub async fn get_cycles(
     if let Some(unchanged) = computations::unchanged(&app, id, &headers, format).await? {
         return Ok(unchanged);
     }
-    let mut memory = app.pool.reserve(last * OBJECT + format.bytes(0, 0)).await?;
-    let (sequence, page) = app.sessions.cycles(id, last, &mut memory).await?;
-    let write =
-        move || format.write(CAPACITY, &page, || Some(Drawing::Plot(plot(&page))), || Some(table(&page)), &|| true);
-    let body = app.pool.run(format.cost(), write).await??;
+    context.reserve(last * OBJECT + format.bytes(0, 0)).await?;
+    let (sequence, page) = app.sessions.cycles(id, last, &mut context.admission.memory.clone()).await?;
+    let write = move |stop: &Deadline| {
+        let (plot, table) = (|| Some(Drawing::Plot(plot(&page))), || Some(table(&page)));
+        format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok())
+    };
+    let body = context.run(format.cost(), write).await??;
     let tag = formats::tag(format, &sequence.to_string());
-    Ok(reply::holding(reply::tagged(formats::reply(format, body), &tag), memory))
+    Ok(reply::tagged(formats::reply(format, body), &tag))
 }
 
 /// Amplitudes, friction work and stiffness of the cycles over the moves that closed them.

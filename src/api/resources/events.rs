@@ -5,7 +5,8 @@ use futures::{Stream, StreamExt as _};
 
 use super::prelude::*;
 use crate::api::path_and_headers::LastEventId;
-use crate::sessions;
+use crate::api::query_parameters::move_number;
+use crate::sessions::{self, SessionError};
 use crate::store::StreamEvent;
 use stickslip_wire::{EndEvent, StateEvent};
 
@@ -14,6 +15,8 @@ parameters! {
     pub struct EventsQuery {
         /// End the stream after this number of events. Without it the stream lasts as long as the contact.
         limit: usize = count(&PAGE);
+        /// As the header `Last-Event-ID`, for a client that cannot send it, such as a new `EventSource`.
+        last_event_id: u64 = move_number();
     }
 }
 
@@ -29,11 +32,18 @@ parameters! {
         content_type = "text/event-stream", body = StateEvent))
 )]
 pub async fn watch_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     LastEventId { sequence }: LastEventId,
     CheckedQuery(query): CheckedQuery<EventsQuery>,
 ) -> Result<Sse<impl Stream<Item = Result<Event, axum::Error>>>, Problem> {
-    let events = sessions::events(&app.sessions, id, sequence).await?.map(|happening| match happening {
+    // The header is that of a client that has come back, and knows more.
+    let after = sequence.or(query.last_event_id);
+    let events = match sessions::events(&app.sessions, id, after).await {
+        // Of a store that was put back to an earlier state. What the client knows is no more: it begins anew.
+        Err(SessionError::Ahead { .. }) => sessions::events(&app.sessions, id, None).await?,
+        events => events?,
+    };
+    let events = events.map(|happening| match happening {
         StreamEvent::State(state) => Event::default().id(state.sequence.to_string()).event("state").json_data(state),
         // Without an identifier, so that a client that reconnects continues where it was.
         StreamEvent::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),

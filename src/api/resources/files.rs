@@ -1,8 +1,5 @@
 //! `/files`: what a file of an instrument has, for other computations. Nothing is stored.
 
-use std::sync::Arc;
-
-use axum::extract::State;
 use serde::Serialize;
 use serde_json::json;
 
@@ -12,6 +9,7 @@ use stickslip_wire::limits::Characters;
 use stickslip_wire::{LoopFileReply, ScanFileReply};
 
 use super::prelude::*;
+use crate::admission::Deadline;
 use crate::api::extract::FileBody;
 use crate::api::query_parameters::{Kind, number, text};
 use stickslip_compute::computations::files;
@@ -129,11 +127,10 @@ impl From<LoopFileQuery> for LoopHints {
     responses((status = 200, description = "The scan, and how the file was read", body = ScanFileReply))
 )]
 pub async fn read_scan_file(
-    State(app): State<Arc<App>>,
     CheckedQuery(hints): CheckedQuery<ScanFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    answer(&app, body, move |bytes| files::scan(bytes, hints.into())).await
+    answer(body, move |bytes, _| files::scan(bytes, hints.into())).await
 }
 
 /// Read a measured loop from a file
@@ -149,20 +146,17 @@ pub async fn read_scan_file(
     responses((status = 200, description = "The loop, and how the file was read", body = LoopFileReply))
 )]
 pub async fn read_loop_file(
-    State(app): State<Arc<App>>,
     CheckedQuery(hints): CheckedQuery<LoopFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    answer(&app, body, move |bytes| files::measured_loop(bytes, &hints.into())).await
+    answer(body, move |bytes, _| files::measured_loop(bytes, &hints.into())).await
 }
 
 async fn answer<R: Serialize>(
-    app: &App,
-    FileBody { bytes, held }: FileBody,
-    read: impl FnOnce(&[u8]) -> Result<R, ImportError> + Send + 'static,
+    FileBody { bytes, context }: FileBody,
+    read: impl FnOnce(&[u8], &Deadline) -> Result<R, ImportError> + Send + 'static,
 ) -> Result<Response, Problem> {
     let cost = files::cost(&bytes);
-    let work = move || Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes)?)?);
-    let text = app.pool.run(cost, work).await??;
-    Ok(held.on(reply::json(text)))
+    let work = move |stop: &Deadline| Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes, stop)?)?);
+    Ok(reply::json(context.run(cost, work).await??))
 }

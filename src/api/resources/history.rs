@@ -30,13 +30,13 @@ parameters! {
             ("Link" = String, description = "The URL of the next page (`rel=\"next\"`), if there is one"))))
 )]
 pub async fn get_history(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, context }: ContactPath,
     headers: HeaderMap,
     CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, HistoryQuery)>,
 ) -> Result<Response, Problem> {
     let HistoryQuery { cycles, format } = query;
     let shown = History { cycles, names_makers: app.sessions.names_makers() };
-    move_series::reply(app, id, &headers, moves, format?, shown).await
+    move_series::reply(app, context, id, &headers, moves, format?, shown).await
 }
 
 /// Moves with the states after them.

@@ -30,12 +30,12 @@ parameters! {
             ("Link" = String, description = "The URL of the next page (`rel=\"next\"`), if there is one"))))
 )]
 pub async fn get_loop(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, context }: ContactPath,
     headers: HeaderMap,
     CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, LoopQuery)>,
 ) -> Result<Response, Problem> {
     let LoopQuery { points_per_move, format } = query;
-    move_series::reply(app, id, &headers, moves, format?, Loop { points_per_move }).await
+    move_series::reply(app, context, id, &headers, moves, format?, Loop { points_per_move }).await
 }
 
 /// Force and displacement along moves.

@@ -43,7 +43,7 @@ pub async fn list_jobs(
     get, path = "/jobs/{id}", tag = "jobs", params(JobPath),
     responses((status = 200, description = "The state and the progress of the job", body = JobReply))
 )]
-pub async fn get_job(JobPath { app, id }: JobPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
+pub async fn get_job(JobPath { app, id, .. }: JobPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
     Ok(reply::json(reply::written(&app.jobs.get(id).await?)?))
 }
 
@@ -55,14 +55,14 @@ pub async fn get_job(JobPath { app, id }: JobPath, _: CheckedQuery<()>) -> Resul
     responses((status = 200, description = "The table", body = SweepReply))
 )]
 pub async fn get_job_result(
-    JobPath { app, id }: JobPath,
+    JobPath { app, id, context }: JobPath,
     CheckedQuery(query): CheckedQuery<TableQuery>,
 ) -> Result<Response, Problem> {
     let format = query.format?;
-    let memory = app.pool.reserve(app.jobs.size(id).await?).await?;
+    context.reserve(app.jobs.size(id).await?).await?;
     let (sweep, result) = app.jobs.result(id).await?;
     let table = Body::from_stream(futures::stream::iter(result.table(&sweep).blocks(format)));
-    Ok(reply::holding(formats::reply(format, table), memory))
+    Ok(formats::reply(format, table))
 }
 
 /// Cancel a job
@@ -72,7 +72,7 @@ pub async fn get_job_result(
     delete, path = "/jobs/{id}", tag = "jobs", params(JobPath),
     responses((status = 204, description = "The job is deleted"))
 )]
-pub async fn cancel_job(JobPath { app, id }: JobPath) -> Result<StatusCode, Problem> {
+pub async fn cancel_job(JobPath { app, id, .. }: JobPath) -> Result<StatusCode, Problem> {
     app.jobs.delete(id).await?;
     Ok(StatusCode::NO_CONTENT)
 }
@@ -87,7 +87,7 @@ pub async fn cancel_job(JobPath { app, id }: JobPath) -> Result<StatusCode, Prob
     responses((status = 200, description = "The events",
         content_type = "text/event-stream", body = JobReply))
 )]
-pub async fn watch_job(JobPath { app, id }: JobPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
+pub async fn watch_job(JobPath { app, id, .. }: JobPath, _: CheckedQuery<()>) -> Result<Response, Problem> {
     stream(&app, id).await
 }
 

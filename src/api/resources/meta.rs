@@ -39,7 +39,8 @@ pub async fn check_readiness(State(app): State<Arc<App>>) -> Result<Json<Value>,
     match app.sessions.ready().await {
         Ok(()) => Ok(Json(json!({"status": "ready"}))),
         Err(error @ SessionError::Store(StoreError::Full(_))) => Err(error.into()),
-        Err(error) => Err(Problem::new(Code::Overloaded, "the store is not ready").because(error.to_string())),
+        Err(error @ SessionError::Pool(_)) => Err(error.into()),
+        Err(error) => Err(Problem::new(Code::StorageUnavailable, "the store is not ready").because(error.to_string())),
     }
 }
 
@@ -80,7 +81,6 @@ impl From<Refusal> for Problem {
     fn from(refusal: Refusal) -> Problem {
         match refusal {
             Refusal::Ambiguous(why) => Problem::new(Code::AmbiguousRequest, why),
-            Refusal::Stopping => Problem::new(Code::Stopping, "the server stops: nothing has changed"),
             Refusal::Foreign(why) => Problem::new(Code::ForeignOrigin, why),
             Refusal::Full(error) => error.into(),
         }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use axum::Extension;
 use axum::extract::State;
 use prometheus::{IntCounter, IntGauge, Opts, Registry, TextEncoder};
 use stickslip_mechanics::ENGINE;
@@ -22,11 +21,8 @@ const MEDIA_TYPE: &str = "text/plain; version=0.0.4; charset=utf-8";
     responses((status = 200, description = "The text format of Prometheus, version 0.0.4", content_type = "text/plain",
         body = String))
 )]
-pub async fn metrics(
-    State(app): State<Arc<App>>,
-    Extension(traffic): Extension<Arc<RequestMetrics>>,
-) -> Result<Response, Problem> {
-    let text = page(&app, &traffic).map_err(|error| Problem::internal(error.to_string()))?;
+pub async fn metrics(State(app): State<Arc<App>>, Context(context): Context) -> Result<Response, Problem> {
+    let text = page(&app, &context.metrics).map_err(|error| Problem::internal(error.to_string()))?;
     Ok(([(header::CONTENT_TYPE, MEDIA_TYPE)], text).into_response())
 }
 

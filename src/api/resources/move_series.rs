@@ -12,9 +12,10 @@ use stickslip_plot::{Axis, Colour, Curve, Drawing, Panel, Plot};
 use stickslip_wire::{HistoryPage, JsonPath};
 
 use super::prelude::*;
-use crate::admission::Reservation;
+use crate::admission::{Deadline, Reservation};
 use crate::api::formats::TableStream;
 use crate::api::query_parameters::{QueryParams, QueryReader, move_number};
+use crate::api::request_context::RequestContext;
 use stickslip_compute::Stop as _;
 use stickslip_compute::formats::{CAPACITY, Table, Unwritable};
 use stickslip_compute::simulation::Failure;
@@ -81,6 +82,7 @@ pub(super) trait MoveSeries: Clone + Send + Sync + 'static {
 /// that programs read row by row has all of them.
 pub(super) async fn reply<T: MoveSeries>(
     app: Arc<App>,
+    context: Arc<RequestContext>,
     id: Uuid,
     headers: &HeaderMap,
     moves: MovesQuery,
@@ -89,12 +91,12 @@ pub(super) async fn reply<T: MoveSeries>(
 ) -> Result<Response, Problem> {
     let MovesQuery { after, limit, last } = moves;
     if (after, limit, last) == (None, None, None) && format.is_stream() {
-        return all(app, id, headers, format, shown).await;
+        return all(app, context, id, headers, format, shown).await;
     }
     let limit = last.or(limit).unwrap_or(DEFAULT_PAGE);
     let newest = last.is_some() || after.is_none() && format.is_plot();
     let after = if newest { app.sessions.sequence(id).await?.saturating_sub(limit as u64) } else { after.unwrap_or(0) };
-    let mut memory = app.pool.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
+    context.reserve(shown.bytes(limit) + format.bytes(0, 0)).await?;
     let moves = app.sessions.history(id, after, limit).await?;
     let tag = formats::tag(format, &(version(&moves, after) + &shown.parameters()));
     if reply::is_current(headers, &tag) {
@@ -104,9 +106,8 @@ pub(super) async fn reply<T: MoveSeries>(
         let query = format!("after={next}&limit={limit}{}&format={}", shown.parameters(), format.name());
         HeaderValue::from_str(&format!("</contacts/{id}/{}?{query}>; rel=\"next\"", T::NAME)).ok()
     });
-    let page = shown.page(&app, id, after, moves, format, &mut memory).await?;
-    let (stop, _raised_at_the_end) = app.pool.deadline();
-    let write = move || {
+    let page = shown.page(&app, id, after, moves, format, &mut context.admission.memory.clone()).await?;
+    let write = move |stop: &Deadline| {
         let (plot, table) = (|| Some(Drawing::Plot(T::plot(&page))), || Some(shown.table(&page)));
         let written = format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok());
         if written.is_err() {
@@ -114,9 +115,9 @@ pub(super) async fn reply<T: MoveSeries>(
         }
         Ok::<_, Problem>(written?)
     };
-    let mut response = reply::tagged(formats::reply(format, app.pool.run(format.cost(), write).await??), &tag);
+    let mut response = reply::tagged(formats::reply(format, context.run(format.cost(), write).await??), &tag);
     response.headers_mut().extend(next.map(|next| (header::LINK, next)));
-    Ok(reply::holding(response, memory))
+    Ok(response)
 }
 
 /// The version of a page. Moves never change, so that the last one and whether more follow determine a page.
@@ -129,6 +130,7 @@ fn version(page: &HistoryPage, after: u64) -> String {
 /// The reply with all moves of a contact as one table.
 async fn all<T: MoveSeries>(
     app: Arc<App>,
+    context: Arc<RequestContext>,
     id: Uuid,
     headers: &HeaderMap,
     format: Format,
@@ -140,7 +142,8 @@ async fn all<T: MoveSeries>(
         return Ok(reply::not_modified(&tag));
     }
     app.sessions.check_complete(id, end).await?;
-    let memory = app.pool.reserve(shown.bytes(BLOCK)).await?;
+    context.reserve(shown.bytes(BLOCK)).await?;
+    let memory = context.admission.memory.clone();
     let stream = TableStream::new(format);
     let mut table = WholeTable { app, id, shown, format, stream, end, after: 0, is_done: false, memory };
     // Before the reply begins, which cannot be taken back.

@@ -22,7 +22,7 @@ use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, R
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn move_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<MoveRequest>,
 ) -> Result<Response, Problem> {
@@ -47,7 +47,7 @@ pub async fn move_contact(
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn follow_path(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<PathRequest>,
 ) -> Result<Response, Problem> {
@@ -70,18 +70,19 @@ pub async fn follow_path(
             run"))))
 )]
 pub async fn relax_contact(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<RelaxRequest>,
 ) -> Result<Response, Problem> {
-    let CheckedBody { body, key, mut held } = request;
+    let CheckedBody { body, key, context } = request;
     if body.dry_run {
-        let (sequence, body) = app.sessions.dry_run_relax(id, body, expected, &mut held.memory).await?;
-        return Ok(held.on(reply::at_sequence(sequence, body)));
+        let memory = &mut context.admission.memory.clone();
+        let (sequence, body) = app.sessions.dry_run_relax(id, body, expected, memory).await?;
+        return Ok(reply::at_sequence(sequence, body));
     }
     let advance = Advance::from(body);
-    held.resize(&app.pool, bytes_of_moves(&advance)).await?;
-    Ok(held.on(reply::of_change(app.sessions.apply(id, advance, expected, key).await?)))
+    context.reserve(bytes_of_moves(&advance)).await?;
+    Ok(reply::of_change(app.sessions.apply(id, advance, expected, key).await?))
 }
 
 /// Moves a contact by a checked body.
@@ -89,8 +90,8 @@ pub(super) async fn advance<T: Document<Checked = Advance>>(
     app: &App,
     id: Uuid,
     expected: Option<Expected>,
-    CheckedBody { body, key, mut held }: CheckedBody<T>,
+    CheckedBody { body, key, context }: CheckedBody<T>,
 ) -> Result<Response, Problem> {
-    held.resize(&app.pool, bytes_of_moves(&body)).await?;
-    Ok(held.on(reply::of_change(app.sessions.apply(id, body, expected, key).await?)))
+    context.reserve(bytes_of_moves(&body)).await?;
+    Ok(reply::of_change(app.sessions.apply(id, body, expected, key).await?))
 }

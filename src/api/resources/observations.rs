@@ -24,7 +24,7 @@ use super::prelude::*;
         headers(("ETag" = String, description = "The new sequence in quotes"))))
 )]
 pub async fn follow_bench(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     IfMatch { expected }: IfMatch,
     request: CheckedBody<ObservationsRequest>,
 ) -> Result<Response, Problem> {
@@ -40,7 +40,7 @@ pub async fn follow_bench(
         headers(("ETag" = String, description = "The sequence in quotes"))))
 )]
 pub async fn get_friction(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     headers: HeaderMap,
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {

@@ -22,12 +22,12 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_residual(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, context }: ContactPath,
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<ResidualQuery>,
 ) -> Result<Response, Problem> {
     let format = query.format?;
     let request = StressRequest { points: Some(PLOT_RADII), radii: None, x: None, fields: Some(vec![Field::Shear]) };
     let between = format.is_plot().then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
-    computations::get_of_contact(&app, id, &headers, format, ResidualTask { between }).await
+    computations::get_of_contact(&app, id, &headers, format, ResidualTask { between }, &context).await
 }

@@ -44,7 +44,7 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn get_stress(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, context }: ContactPath,
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<StressQuery>,
 ) -> Result<Response, Problem> {
@@ -65,5 +65,5 @@ pub async fn get_stress(
             "a table does not have the extrema: ask for them with the format `columns`, or at /contacts/{id}/residual";
         return Err(Problem::at(Code::InvalidInput, "/residual", detail));
     }
-    computations::get_of_contact(&app, id, &headers, format, StressTask { sampling, residual }).await
+    computations::get_of_contact(&app, id, &headers, format, StressTask { sampling, residual }, &context).await
 }

@@ -29,12 +29,12 @@ parameters! {
         headers(("ETag" = String, description = "The sequence that they belong to, in quotes"))))
 )]
 pub async fn compute_subsurface_stress(
-    ContactPath { app, id }: ContactPath,
+    ContactPath { app, id, .. }: ContactPath,
     CheckedQuery(query): CheckedQuery<SubsurfaceFormat>,
     request: CheckedBody<SubsurfaceRequest>,
 ) -> Result<Response, Problem> {
     let format = query.format?;
-    let CheckedBody { body, held, .. } = request;
+    let CheckedBody { body, context, .. } = request;
     let task = app.sessions.subsurface_task(id, body).await?;
-    computations::of_contact(&app, id, format, task, held.memory).await
+    computations::of_contact(&app, id, format, task, &context).await
 }

@@ -41,17 +41,16 @@ pub async fn run_sweep(
 ) -> Result<Response, Problem> {
     let events = accepts_events(&headers);
     let format = if events { Format::Columns } else { query.format? };
-    let CheckedBody { body: checked, key, mut held } = body;
+    let CheckedBody { body: checked, key, context } = body;
     let earlier = match &key {
         Some(key) => app.sessions.earlier_reply(key.clone()).await?,
         None => None,
     };
     let wants_job = checked.request.job || respond_async || events;
-    let (stop, _guard) = app.pool.deadline();
-    let (cost, profiles) = (Sweep::planning_cost(&checked), app.sessions.profiles(&stop));
-    let planned = app.pool.run(cost, move || Sweep::plan(checked, &profiles)).await?;
+    let (cost, profiles) = (Sweep::planning_cost(&checked), app.sessions.profiles(context.deadline()));
+    let planned = context.run(cost, move |_| Sweep::plan(checked, &profiles)).await?;
     if planned.is_err() {
-        stop.check().map_err(|interrupted| Failure::interrupted(interrupted, "/base/contact/profile"))?;
+        context.deadline().check().map_err(|interrupted| Failure::interrupted(interrupted, "/base/contact/profile"))?;
     }
     let sweep = planned?;
     let numbers = sweep.numbers(sweep.points());
@@ -70,14 +69,13 @@ pub async fn run_sweep(
         }
         return Ok(response);
     }
-    let (stop, _guard) = app.pool.deadline();
     let table_bytes = NUMBER * numbers;
-    held.resize(&app.pool, sweep.bytes(app.pool.capacity().threads) + table_bytes).await?;
+    context.reserve(sweep.bytes(app.pool.capacity().threads) + table_bytes).await?;
     let sweep = Arc::new(sweep);
     let result = match earlier.and_then(|reply| SweepResult::from_bytes(&reply.body, numbers)) {
         Some(earlier) => earlier,
         None => {
-            let result = app.jobs.at_once(&sweep, &stop).await?;
+            let result = app.jobs.at_once(&sweep, context.deadline()).await?;
             match key {
                 Some(key) => {
                     let kept = app.sessions.keep_reply(key, result.to_bytes()).await?;
@@ -87,7 +85,7 @@ pub async fn run_sweep(
             }
         }
     };
-    held.resize(&app.pool, table_bytes).await?;
+    context.reserve(table_bytes).await?;
     let table = Body::from_stream(futures::stream::iter(result.table(sweep.checked()).blocks(format)));
-    Ok(held.on(formats::reply(format, table)))
+    Ok(formats::reply(format, table))
 }

@@ -21,7 +21,7 @@ use utoipa::openapi::path::Parameter;
 use super::command_error::CommandError;
 use super::io::{json, parsed, print, read, say, write};
 use super::summary::summary;
-use crate::api::{Problem, QueryParams, QueryReader};
+use crate::api::{self, Problem, QueryParams, QueryReader};
 use stickslip_compute::Flag;
 use stickslip_compute::computations::{About, DisplayOptions, compute, entries};
 use stickslip_compute::formats::Format;
@@ -204,7 +204,10 @@ impl Compute {
         let is_read = !wants_json && named.is_none() && stdout().is_terminal();
         match (body.only, format) {
             (Some(only), _) => print(only(&reply)?),
-            (None, Format::Columns) if is_read => print(summary(&parsed(&reply)?)),
+            (None, Format::Columns) if is_read => {
+                let path = about.route.map_or("", |route| route.path);
+                print(summary(&parsed(&reply)?, path, &parsed(api::document().as_bytes())?))
+            }
             (None, Format::Columns) => print(String::from_utf8_lossy(&reply)),
             (None, _) => write(|out| out.write_all(&reply)),
         }

@@ -2,7 +2,6 @@
 
 use std::error::Error as _;
 use std::ffi::OsString;
-use std::path::Path;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command};
@@ -31,8 +30,8 @@ pub fn unknown_setting<'a>(name: &str, written: &str, known: impl Iterator<Item 
     SettingsError::Invalid(format!("{written}: unknown setting, {advice}"))
 }
 
-/// The error of the parser of arguments, which may be about a value of the configuration file.
-pub fn from_clap(error: clap::Error, command: &Command, arguments: &[OsString], file: Option<&Path>) -> SettingsError {
+/// The error of the parser of arguments.
+pub fn from_clap(error: clap::Error, command: &Command, arguments: &[OsString]) -> SettingsError {
     if !error.use_stderr() {
         return SettingsError::Help(error);
     }
@@ -55,7 +54,7 @@ pub fn from_clap(error: clap::Error, command: &Command, arguments: &[OsString], 
         }
         (ErrorKind::InvalidValue | ErrorKind::ValueValidation, Some(arg)) => {
             let value = text(ContextKind::InvalidValue).unwrap_or_default();
-            let name = written(arg, value, arguments, file);
+            let name = written(arg, value, arguments);
             let why = match (error.source(), value) {
                 (Some(source), _) => masked(&source.to_string()),
                 (None, "") => "a value is missing".to_owned(),
@@ -70,14 +69,13 @@ pub fn from_clap(error: clap::Error, command: &Command, arguments: &[OsString], 
 }
 
 /// The setting and its value as their source writes them: the first that has one.
-fn written(arg: &Arg, value: &str, arguments: &[OsString], file: Option<&Path>) -> String {
+fn written(arg: &Arg, value: &str, arguments: &[OsString]) -> String {
     let (name, value) = (arg.get_long().unwrap_or_default(), masked(value));
     let is_flag = arguments.iter().any(|argument| argument.to_str().and_then(long) == Some(name));
     let variable = arg.get_env().filter(|variable| std::env::var_os(variable).is_some());
-    match (is_flag, variable, file) {
-        (false, Some(variable), _) => format!("{}={value}", variable.to_string_lossy()),
-        (false, None, Some(file)) => format!("{}: {name} = {value}", file.display()),
-        _ => format!("--{name} {value}"),
+    match variable.filter(|_| !is_flag) {
+        Some(variable) => format!("{}={value}", variable.to_string_lossy()),
+        None => format!("--{name} {value}"),
     }
 }
 

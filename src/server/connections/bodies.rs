@@ -13,7 +13,7 @@ use parking_lot::Mutex;
 use tokio::time::timeout;
 
 use super::ConnectionActivity;
-use crate::admission::{Client, RequestPermit, Reservation};
+use crate::admission::UnderWay;
 use crate::server::connection_limits::{DISCARD_TIME, DISCARDED, PIECE};
 
 /// The body of a request, which a handler reads and the service after it.
@@ -68,12 +68,11 @@ impl Drop for RequestInProgress {
 /// resources of the request are free, and no more than that piece is still in flight.
 pub struct TrackedBody {
     pub(super) body: Body,
-    /// On whose behalf what it streams is computed.
-    pub(super) client: Client,
+    /// For which request what it streams is computed, and what that holds until the body is dropped.
+    pub(super) under_way: Option<UnderWay>,
     /// What is left of a piece.
     pub(super) rest: Bytes,
-    /// Released when the body is dropped.
-    pub(super) _held: (RequestInProgress, Option<RequestPermit>, Option<Arc<Reservation>>),
+    pub(super) _in_progress: RequestInProgress,
 }
 
 impl TrackedBody {
@@ -91,8 +90,13 @@ impl http_body::Body for TrackedBody {
         if !self.rest.is_empty() {
             return Poll::Ready(Some(Ok(Frame::data(self.next_piece()))));
         }
-        let TrackedBody { body, client, .. } = &mut *self;
-        let Poll::Ready(frame) = client.within(|| Pin::new(body).poll_frame(cx)) else { return Poll::Pending };
+        let TrackedBody { body, under_way, .. } = &mut *self;
+        let mut poll = || Pin::new(&mut *body).poll_frame(cx);
+        let polled = match under_way {
+            Some(under_way) => under_way.admission().within(poll),
+            None => poll(),
+        };
+        let Poll::Ready(frame) = polled else { return Poll::Pending };
         let Some(Ok(frame)) = frame else { return Poll::Ready(frame) };
         match frame.into_data() {
             Ok(data) if data.len() > PIECE => {

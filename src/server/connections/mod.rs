@@ -9,23 +9,21 @@
 
 mod activity;
 mod bodies;
-mod chunks;
 mod limiter;
 mod own_hosts;
 mod proxies;
 mod service;
-mod smuggling;
 mod socket;
 
 use std::time::Duration;
 
-pub(crate) use activity::ConnectionActivity;
+pub(crate) use activity::{ConnectionActivity, Late};
 pub(crate) use limiter::ConnectionPermit;
 pub use limiter::{ConnectionCounts, ConnectionLimiter};
 pub use own_hosts::OwnHosts;
 pub(crate) use proxies::is_trusted;
 pub use proxies::network;
-pub use service::{Refusal, RequestClient, Service};
+pub use service::{Arrival, Refusal, Service};
 pub(crate) use socket::Socket;
 
 /// Connections at a time by default.

@@ -1,4 +1,4 @@
-//! Serves one request of a connection: acquires a permit, calls the router, and returns a reply that releases it.
+//! Serves one request of a connection: says what is known of it when its head is read, and calls the router.
 
 use std::net::IpAddr;
 use std::sync::Arc;
@@ -16,18 +16,19 @@ use tower_service::Service as _;
 use super::bodies::{RequestInProgress, SharedBody, TrackedBody, discard};
 use super::proxies;
 use super::{ConnectionActivity, OwnHosts};
-use crate::admission::{Client, Pool, PoolError, Quota, Reservation};
+use crate::admission::{PoolError, UnderWay};
 
-/// Paths that are answered even if the server is busy.
-const ALWAYS_ANSWERED: [&str; 3] = ["/healthz", "/readyz", "/metrics"];
-
-/// From whom a request comes.
+/// A request whose head has been read. The API makes its context of it.
 #[derive(Clone, Copy, Debug)]
-pub struct RequestClient {
+pub struct Arrival {
     /// The address of the client.
     pub address: IpAddr,
     /// How long the body may take to arrive.
     pub body_time: Duration,
+    /// Why it is refused before it reaches a handler, if so.
+    pub refusal: Option<Refusal>,
+    /// Whether it came by a spare connection, which is there for the health of the server.
+    pub spare: bool,
 }
 
 /// Why a request is refused before it reaches a handler.
@@ -37,20 +38,14 @@ pub enum Refusal {
     Full(PoolError),
     /// Its head can be read in more than one way.
     Ambiguous(&'static str),
-    /// The server stops before there is capacity for it.
-    Stopping,
     /// It comes by a foreign name, or from a page of another site.
     Foreign(&'static str),
 }
 
 /// What serves the requests of all connections.
 pub struct Service {
-    /// All routes, which answer a request with a [`Refusal`] in place of its handler.
+    /// All routes, which make the context of a request of its [`Arrival`].
     pub router: Router,
-    /// Where requests get their places.
-    pub pool: Pool,
-    /// Whether clients are distinguished by their addresses: where there are no keys.
-    pub by_address: bool,
     /// How long a body may take to arrive.
     pub body_time: Duration,
     /// By which names it may be called; any if none.
@@ -80,60 +75,34 @@ impl Service {
         let (head, body) = request.into_parts();
         let body = SharedBody(Arc::new(Mutex::new(body)));
         let mut request = Request::from_parts(head, Body::new(body.clone()));
-        let address = proxies::client(peer, request.headers(), &self.proxies);
-        request.extensions_mut().insert(RequestClient { address, body_time: self.body_time });
-        let client = Client::of_address(address);
-        let fault = in_progress.0.head_fault().or_else(|| ambiguity(&request));
-        // A proxy may see the end of the chunks elsewhere, and what follows them has not been inspected.
+        let fault = ambiguity(&request);
+        // A proxy may see the end of the chunks elsewhere.
         let mut last = fault.is_some() || request.headers().contains_key(header::TRANSFER_ENCODING);
-        // Of a head that can be read in two ways nobody knows where the body ends. A client that is not asked for its
-        // body sends none.
-        let readable = fault.is_none() && !spare && !request.headers().contains_key(header::EXPECT);
-        let always = ALWAYS_ANSWERED.contains(&request.uri().path());
-        let share = || client.within(|| self.pool.share_of(Quota::Requests));
-        let share = (self.by_address && !always).then(share).transpose();
-        let permit = if let Some(fault) = fault {
-            Err(Refusal::Ambiguous(fault))
-        } else if let Some(why) = self.hosts.as_ref().and_then(|hosts| hosts.refuse(&request)) {
-            Err(Refusal::Foreign(why))
-        } else if always {
-            Ok(None)
-        } else if let Err(exceeded) = share {
-            Err(Refusal::Full(exceeded))
-        } else if spare {
-            Err(Refusal::Full(PoolError::Busy))
-        } else if request.method() == Method::POST {
-            // It acquires its permit once its body has arrived.
-            Ok(None)
-        } else {
-            let mut stopping = self.stopping.subscribe();
-            tokio::select! {
-                biased;
-                permit = self.pool.admit_request() => permit.map(Some).map_err(Refusal::Full),
-                _ = stopping.wait_for(|stopping| *stopping) => Err(Refusal::Stopping),
-            }
-        };
-        let permit = permit.unwrap_or_else(|refusal| {
-            request.extensions_mut().insert(refusal);
-            None
-        });
-        let Ok(mut reply) = client.clone().serve(self.router.clone().call(request)).await;
-        // A body that took too long is not waited for again.
-        let readable = readable && reply.status() != StatusCode::REQUEST_TIMEOUT;
+        // A client that is not asked for its body sends none.
+        let mut readable = fault.is_none() && !spare && !request.headers().contains_key(header::EXPECT);
+        let with_body = matches!(*request.method(), Method::POST | Method::PATCH | Method::PUT);
+        if readable && !with_body && !body.is_end_stream() {
+            // Before the request holds anything. A body that does not arrive in time is not waited for again.
+            readable = discard(body.clone()).await;
+        }
+        let foreign = || self.hosts.as_ref().and_then(|hosts| hosts.refuse(&request)).map(Refusal::Foreign);
+        let refusal = fault.map(Refusal::Ambiguous).or_else(foreign);
+        let address = proxies::client(peer, request.headers(), &self.proxies);
+        request.extensions_mut().insert(Arrival { address, body_time: self.body_time, refusal, spare });
+        let Ok(mut reply) = self.router.clone().call(request).await;
         // The next request of the connection begins after the body.
         if !body.is_end_stream() {
+            readable &= reply.status() != StatusCode::REQUEST_TIMEOUT && !*self.stopping.borrow();
             last |= !readable || !discard(body).await;
         }
         if last {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
-        // That of the key, if there is one.
-        let client = reply.extensions_mut().remove::<Client>().unwrap_or(client);
-        let memory = reply.extensions_mut().remove::<Arc<Reservation>>();
-        // An endless stream has a limit of its own and occupies no solver. A compressed reply ends, but has no length.
-        let ends = reply.body().size_hint().exact().is_some() || reply.headers().contains_key(header::CONTENT_ENCODING);
-        let held = (in_progress, permit.filter(|_| ends), memory);
-        Ok(reply.map(|body| TrackedBody { body, client, rest: Bytes::new(), _held: held }))
+        let under_way = reply.extensions_mut().remove::<UnderWay>();
+        if under_way.as_ref().is_some_and(|under_way| under_way.admission().memory.class().is_some()) {
+            in_progress.0.begin_large_reply();
+        }
+        Ok(reply.map(|body| TrackedBody { body, under_way, rest: Bytes::new(), _in_progress: in_progress }))
     }
 }
 
@@ -146,6 +115,8 @@ fn ambiguity<B>(request: &Request<B>) -> Option<&'static str> {
         ("host", "the head names more than one host"),
         ("content-type", "the head has more than one Content-Type"),
         ("idempotency-key", "the head has more than one Idempotency-Key"),
+        ("if-match", "the head has more than one If-Match"),
+        ("last-event-id", "the head has more than one Last-Event-ID"),
         ("origin", "the head has more than one Origin"),
     ];
     let is_repeated = |name: &str| request.headers().get_all(name).iter().nth(1).is_some();

@@ -1,30 +1,28 @@
 //! What a reply states about itself: its solver, its errors, and the time that it took.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::warnings::assumption;
 use crate::prelude::*;
+use crate::stop::processor_time;
 
-/// Measures the time spent computing for a request: with what its [`Stop`] has counted before, and without the time for
-/// which it has yielded to others.
+/// Measures the processor time of this thread for a request, with what its [`Stop`] has counted before.
 #[derive(Clone, Copy)]
 pub struct Timer<'a> {
     stop: &'a dyn Stop,
-    begin: Instant,
-    waited: Duration,
+    begin: Duration,
 }
 
 impl Timer<'_> {
     /// Starts now.
     #[must_use]
     pub fn start(stop: &dyn Stop) -> Timer<'_> {
-        Timer { stop, begin: Instant::now(), waited: stop.flag().waited() }
+        Timer { stop, begin: processor_time() }
     }
 
     /// The time up to now.
     pub fn elapsed(&self) -> Duration {
-        let flag = self.stop.flag();
-        flag.before() + (self.begin.elapsed() + self.waited).saturating_sub(flag.waited())
+        self.stop.flag().before() + processor_time().saturating_sub(self.begin)
     }
 }
 

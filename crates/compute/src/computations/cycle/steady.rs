@@ -87,8 +87,6 @@ pub fn steady_cycles(
     let step = Move { tangential: Some(Tangential::Displacement(largest)), ..Move::default() };
     // A displacement within its range is always reached.
     let estimated = turned.apply(&step).map_or(contact, |()| &turned);
-    let mut accuracy = accuracy(estimated, timer, reason);
-    accuracy.force_error = accuracy.force_error.max(error);
     let mut warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
     let mut frequency_response = None;
     if let Some((asked, tolerance)) = &task.response {
@@ -96,6 +94,9 @@ pub fn steady_cycles(
         warnings.extend(warning);
         frequency_response = Some(found);
     }
+    // At the end: it states the time that all of this took.
+    let mut accuracy = accuracy(estimated, timer, reason);
+    accuracy.force_error = accuracy.force_error.max(error);
     Ok(CycleReply { contact: contact.summary().into(), cycles, frequency_response, accuracy, warnings })
 }
 
