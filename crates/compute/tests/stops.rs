@@ -224,3 +224,18 @@ fn work_of_every_kind_asks_throughout_and_ends_at_the_first_no() {
     }
     assert!(failed.is_empty(), "{failed:#?}");
 }
+
+#[test]
+fn stresses_at_many_radii_ask_a_few_times_however_long_the_history_is() {
+    // The rings of the history are summed by a tree, which is built anew between two questions.
+    let asked = |reversals: usize, points: usize| {
+        let stress = json!({"points": points, "fields": ["shear"]});
+        let path = json!({"falling_amplitude": {"reversals": reversals}});
+        let body = of(&ball(), json!({"path": path, "steps": "last", "stress": stress}));
+        let stop = Questions::granting(u64::MAX);
+        compute("simulate", body.to_string().as_bytes(), DisplayOptions::in_format(Format::Columns), &stop).unwrap();
+        stop.end().asked
+    };
+    let more = |reversals: usize| asked(reversals, 1_000) - asked(reversals, 2);
+    assert_eq!(more(3_000), more(10));
+}

@@ -51,7 +51,9 @@ fn main() -> Result<(), Error> {
             let states = cycle.states(INSTANTS, &|| true)?;
             let fields: Vec<_> =
                 states.iter().map(|state| state.subsurface(BODY.0, BODY.1)).collect::<Result<_, _>>()?;
-            let path = |place: &[f64; 3]| fields.iter().map(|field| field.at(*place)).collect::<Vec<_>>();
+            let path = |place: &[f64; 3]| {
+                fields.iter().map(|field| field.at(*place).expect("a place near the contact")).collect::<Vec<_>>()
+            };
             Ok(places.iter().map(|place| criterion.of(&path(place)).value).collect())
         };
         let study = |tolerance| Study::new(&cycle, BODY, None, vec![Measure::Stress(criterion)], tolerance, &|| true);

@@ -4,9 +4,10 @@
 use std::cell::Cell;
 
 use crate::cells::call_count::{Calls, during, so_far};
+use crate::cycle::{Drive, best_load};
 use crate::profile::{PowerLaw, RoundedPunch};
 use crate::protocol::{equal_peaks, falling_amplitude};
-use crate::{Contact, Elasticity, Move, Preload, Profile, Setup, Sphere, Tangential};
+use crate::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
 /// Reversals of the path.
 const REVERSALS: usize = 9;
@@ -137,4 +138,35 @@ fn the_law_of_equal_peaks_needs_the_slopes_of_the_profile_alone() {
     let (calls, path) = during(|| equal_peaks(&contact, REVERSALS, None).unwrap());
     assert_eq!(calls, Calls::default());
     assert_eq!(path.displacements.len(), REVERSALS + 1);
+}
+
+#[test]
+fn moves_by_force_and_the_search_for_a_load_copy_no_history() {
+    let mut contact = virgin(true);
+    let limit = contact.summary().gross_slip_force;
+    let (calls, ()) = during(|| {
+        for index in 0..1000 {
+            let target = limit * (0.9 - 8e-4 * f64::from(index)) * if index % 2 == 0 { 1.0 } else { -1.0 };
+            let tangential = Some(Tangential::Force(target));
+            contact.apply(&Move { tangential, ..Move::default() }).unwrap();
+        }
+    });
+    assert_eq!((contact.memory_depth(), calls.copies), (1001, 0), "at constant load");
+    // A displacement to each of the same turning points costs as many integrals, but for the search of its radius.
+    let mut driven = virgin(true);
+    let (by_displacement, ()) = during(|| {
+        let path = falling_amplitude(1000, driven.gross_slip_displacement());
+        follow(&mut driven, path.take(1000));
+    });
+    assert!(calls.moments <= 9 * by_displacement.moments, "{calls:?} by force, {by_displacement:?} by displacement");
+    let (calls, ()) = during(|| {
+        let (tangential, load) = (Some(Tangential::Force(0.2 * limit)), contact.normal_force());
+        let normal = Some(Normal::NormalForce(0.9 * load));
+        let stopped = contact.apply_while(&Move { tangential, normal, relative: false }, 1e-6, &|| false);
+        assert_eq!(stopped, Err(Error::Interrupted));
+        contact.apply(&Move { tangential, normal, relative: false }).unwrap();
+    });
+    assert_eq!(calls.copies, 0, "under a changing load, refused or not");
+    let (calls, _) = during(|| best_load(&contact, Drive::Force(0.1 * limit), 0.0, &|| true).unwrap().unwrap());
+    assert_eq!(calls.copies, 0, "for the load of most work");
 }

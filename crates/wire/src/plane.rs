@@ -233,7 +233,8 @@ impl PartialSchema for SimulationReply {
 pub struct PlanarPlan {
     /// The moves.
     pub moves: Vec<rings::PlanarMove>,
-    /// The direction of the line that all moves lead along, if they do and no rings are asked for.
+    /// The direction of the line that all moves lead along, if they do: the exact solver then follows them, also where
+    /// rings are asked for.
     pub line: Option<[f64; 2]>,
     /// The pointer, below the path, to the first pair; the ellipse itself.
     first_pair: String,
@@ -320,7 +321,7 @@ impl SimulatedPath {
         faults.none_within(at)?;
         let plan = |moves: &mut dyn Iterator<Item = SimulatedMove>, form, first_pair: Option<String>| {
             let moves = moves.map(|step| step.in_plane()).collect();
-            Some(Plan::Plane(PlanarPlan::new(moves, form, rings, first_pair.unwrap_or_default())))
+            Some(Plan::Plane(PlanarPlan::new(moves, form, first_pair.unwrap_or_default())))
         };
         match &self {
             SimulatedPath::Moves(moves) => {
@@ -341,7 +342,7 @@ impl SimulatedPath {
                 return plan(moves, Form::Targets("force"), None);
             }
             SimulatedPath::Ellipse(ellipse) => {
-                return ellipse.check(rings, at.member("ellipse"), faults).map(Plan::Plane);
+                return ellipse.check(at.member("ellipse"), faults).map(Plan::Plane);
             }
             _ if rings => {
                 let detail = "rings follow `moves`, `displacement`, `force` and `ellipse`: leave `solver` out";
@@ -364,7 +365,7 @@ fn first_pair(moves: &[SimulatedMove]) -> Option<String> {
 }
 
 impl Ellipse {
-    fn check(&self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<PlanarPlan> {
+    fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<PlanarPlan> {
         let steps = self.steps_per_turn.unwrap_or(DEFAULT_STEPS_PER_TURN);
         let moves = self.turns.saturating_mul(steps);
         if moves >= *PATH_MOVES.end() {
@@ -386,7 +387,7 @@ impl Ellipse {
         let begin = arc([0.0; 2]);
         let begin = to(PlanarTarget::Displacement(line.map_or_else(|| begin.at(0.0), |line| line.point(&begin))));
         let moves = std::iter::once(begin).chain((0..moves).map(along)).collect();
-        Some(PlanarPlan::new(moves, Form::Ellipse(steps), rings, "/ellipse".to_owned()))
+        Some(PlanarPlan::new(moves, Form::Ellipse(steps), "/ellipse".to_owned()))
     }
 
     /// The line that this ellipse is, if it is one, and its points with so many steps a turn include those where it
@@ -422,9 +423,9 @@ impl EllipseLine {
 }
 
 impl PlanarPlan {
-    fn new(moves: Vec<rings::PlanarMove>, form: Form, rings: bool, first_pair: String) -> PlanarPlan {
+    fn new(moves: Vec<rings::PlanarMove>, form: Form, first_pair: String) -> PlanarPlan {
         let (count, direction) = straight_moves(&moves);
-        let line = (!rings && count == moves.len()).then_some(direction);
+        let line = (count == moves.len()).then_some(direction);
         PlanarPlan { moves, line, first_pair, form }
     }
 

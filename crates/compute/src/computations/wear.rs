@@ -18,6 +18,8 @@ const KNOT_COST: u64 = 100_000;
 /// Its points between two places at which they crowd: centre, stick radius, worn radius, rims; and knots that are kept.
 const TABLE_POINTS: usize = 256;
 const TABLE_KNOTS: usize = 4_000;
+/// The error of the normal force of the table that is warned of.
+const LARGE_ERROR: f64 = 1e-2;
 /// How far the curves go on beyond the worn part, in its radius.
 const REACH: f64 = 1.25;
 const REASON: &str = "the limit of wear at a constant indentation follows from g alone";
@@ -137,7 +139,15 @@ fn limiting_profile(
     {
         let table = TabulatedProfile { r: radii, z: heights, indentation_error: None, pressure_error: None };
         let error = WornProfileError { normal_force: normal_force_error, rise_width };
-        return (Some(Profile::Tabulated(table)), Some(error), None);
+        let warning = (normal_force_error > LARGE_ERROR).then(|| {
+            let detail = format!(
+                "the normal force of `profile` differs by {:.2} % from that of the limit: the rise of its g is wide \
+                 beside the stuck disc",
+                100.0 * normal_force_error
+            );
+            Warning::new("worn_profile_error", detail)
+        });
+        return (Some(Profile::Tabulated(table)), Some(error), warning);
     }
     let reason = if contact.indenter().rim_radius().is_some() {
         "the profile ends in a vertical edge, which a table does not have".to_owned()

@@ -13,6 +13,9 @@ use crate::prelude::*;
 
 /// The reason for a solver that the request names.
 const AS_ASKED: &str = "as asked for";
+/// The reason for the exact solver where rings are asked for.
+const ALONG_ONE_LINE: &str =
+    "in place of the rings asked for: all moves lead along one line, which has an exact solution";
 
 /// Runs a simulation.
 ///
@@ -38,6 +41,7 @@ pub(super) fn simulate_on(
     stop: &dyn Stop,
 ) -> Result<SimulateReply, Failure> {
     let reason = match (simulation.solver, simulation.plan.curved()) {
+        (Some(wire::Solver::Rings(_)), _) => ALONG_ONE_LINE,
         (Some(_), _) => AS_ASKED,
         (None, 0) => "every move of this path has an exact solution, which is also the cheapest",
         (None, _) => "only this solver follows moves straight in a force under changing load, to the tolerance",
@@ -239,11 +243,6 @@ pub fn follow<S: Solver>(
     Ok(())
 }
 
-/// Radii times pieces between two checks of the flag: some milliseconds.
-const TERMS_PER_CHECK: usize = 1 << 17;
-/// The most radii between two checks.
-const RADII_PER_CHECK: usize = 512;
-
 /// The requested stresses.
 ///
 /// # Errors
@@ -251,8 +250,7 @@ const RADII_PER_CHECK: usize = 512;
 pub fn stresses<S: Solver>(solver: &S, sampling: &StressRequest, stop: &dyn Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     let (places, line) = sampled(solver.exact(), sampling, solver.state().contact_radius, "/stress")?;
-    let (terms, least) = solver.terms();
-    let at_once = (TERMS_PER_CHECK / terms.max(1)).clamp(least, RADII_PER_CHECK);
+    let at_once = solver.radii_at_once();
     let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
         if !sampling.wants(field) {
             return Ok(None);

@@ -5,6 +5,16 @@ use stickslip_mechanics::{Error, ErrorEstimate, Move, Residual, Springs, State};
 
 use crate::prelude::*;
 
+/// Radii between two questions whether to go on.
+const RADII_AT_ONCE: usize = 512;
+/// Terms between them where each radius adds up all.
+const TERMS_AT_ONCE: usize = 1 << 17;
+
+/// Radii at which so many terms each take as long as that.
+fn radii_of_terms(terms: usize) -> usize {
+    (TERMS_AT_ONCE / terms.max(1)).clamp(1, RADII_AT_ONCE)
+}
+
 /// A contact that can be moved and whose fields can be read. What a solver does not define is that of its exact
 /// contact.
 pub trait Solver {
@@ -31,10 +41,10 @@ pub trait Solver {
         self.exact().memory_depth()
     }
 
-    /// Terms of a field at one radius, and how many radii are at least evaluated together: what they share is made once
-    /// for all of them.
-    fn terms(&self) -> (usize, usize) {
-        (self.depth(), 64)
+    /// How many radii a field is computed at between two questions whether to go on, which takes some milliseconds.
+    /// The rings of a round contact are summed by a tree, which is built once for all of them.
+    fn radii_at_once(&self) -> usize {
+        if self.exact().profile().line().is_some() { radii_of_terms(self.depth()).max(64) } else { RADII_AT_ONCE }
     }
 
     /// A field at each of the radii, m: a stress, Pa, or a displacement, m. Not a number for the slip outside the
@@ -114,8 +124,8 @@ impl Solver for Springs {
         0
     }
 
-    fn terms(&self) -> (usize, usize) {
-        (self.state().memory_depth, 1)
+    fn radii_at_once(&self) -> usize {
+        radii_of_terms(self.state().memory_depth)
     }
 
     fn field(&self, field: Field, radii: &[f64]) -> Vec<f64> {

@@ -12,7 +12,7 @@ const PLACES_PER_CHECK: usize = 64;
 /// The fields that are asked for, and their estimated error relative to the largest pressure.
 ///
 /// # Errors
-/// [`Failure`] if the work was ended.
+/// [`Failure`] for a place too far from the contact, or if the work was ended.
 pub fn subsurface(contact: &Contact, task: &SubsurfaceTask, stop: &dyn Stop) -> Result<(Subsurface, f64), Failure> {
     let field = contact.subsurface(task.side, task.poisson_ratio);
     let field = field.map_err(|error| Failure::at("/subsurface/poisson_ratio", error))?;
@@ -22,7 +22,7 @@ pub fn subsurface(contact: &Contact, task: &SubsurfaceTask, stop: &dyn Stop) -> 
         if index % PLACES_PER_CHECK == 0 {
             stop.check()?;
         }
-        let stress = field.at(task.places.at(index));
+        let stress = field.at(task.places.at(index)).map_err(|error| Failure::at("/subsurface", error))?;
         push(&mut reply, task, task.bulk.map_or(stress, |bulk| stress + bulk));
     }
     Ok((reply, field.error()))

@@ -63,10 +63,11 @@ fn a_line_at_any_angle_is_served_by_the_exact_solver() {
         let (one, other) = (&straight["stress"]["shear"][index], &turned["stress"]["shear_y"][index]);
         assert!((0.8 * number(one) - number(other)).abs() <= 1e-9 * number(one).abs(), "{one} {other}");
     }
-    let rings = simulate(json!({"path": {"moves": moves}, "solver": {"rings": {"count": 20}}}));
-    let error = number(&rings["accuracy"]["force_error"]);
-    let off = number(&rings["steps"][2]["force"][0]) - number(&turned["steps"][2]["force"][0]);
-    assert!(rings["accuracy"]["solver"] == "rings" && off.abs() <= error * limit, "{off} {error}");
+    let rings = json!({"rings": {"count": 160}});
+    let asked = simulate(json!({"path": {"moves": moves}, "solver": rings, "stress": {"points": 3}}));
+    assert_eq!((&asked["steps"], &asked["stress"]), (&turned["steps"], &turned["stress"]));
+    assert_eq!(asked["accuracy"]["solver"], "exact");
+    assert!(asked["accuracy"]["reason"].as_str().unwrap().contains("one line"), "{}", asked["accuracy"]);
 }
 
 #[test]

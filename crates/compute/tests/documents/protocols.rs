@@ -111,3 +111,29 @@ fn every_fault_has_its_pointer() {
         assert_eq!((refused.status, found), (422, vec![pointer]), "{asked}: {refused:?}");
     }
 }
+
+#[test]
+fn an_annulus_as_thin_as_a_rounding_of_its_radius_has_a_protocol_or_is_refused() {
+    let sphere = json!({"type": "truncated_sphere", "radius": 0.05, "flat_radius": 0.01});
+    let cone = json!({"type": "truncated_cone", "slope": 0.05, "flat_radius": 0.01});
+    for (profile, load) in [(&sphere, 0.1), (&sphere, 0.3), (&cone, 1e-9), (&cone, 1e-6)] {
+        let contact = json!({
+            "profile": profile, "material": {"effective": {"e_star": 1.2e11, "g_star": 1e11}}, "friction": 0.5,
+            "preload": {"normal_force": load}
+        });
+        for kind in ["minimax", "equal_peaks", "linear"] {
+            for end in ["force_zero", "displacement_zero", "free"] {
+                for reversals in 1..=4_usize {
+                    let asked = json!({"contact": contact, "kind": kind, "reversals": reversals, "end": end});
+                    match post("/protocols", &asked) {
+                        Ok(reply) => {
+                            let moves = reply["path"]["displacement"].as_array().unwrap().len();
+                            assert!((1..=reversals + 2).contains(&moves), "{asked}: {moves} moves");
+                        }
+                        Err(refused) => assert_eq!(refused.status, 422, "{asked}"),
+                    }
+                }
+            }
+        }
+    }
+}

@@ -67,6 +67,27 @@ fn a_ball_wears_to_the_closed_form_and_the_profile_carries_on() {
 }
 
 #[test]
+fn a_table_whose_force_is_far_from_that_of_the_limit_comes_with_a_warning() {
+    let mut warned = 0;
+    for part in [0.1, 0.5, 0.9, 0.99, 0.999, 0.99999, 1.0 - 1e-7, 1.0 - 1e-9] {
+        let reply = good(post("/wear", &of(&unit_ball(), &asked(part))));
+        if reply["profile"].is_null() {
+            continue;
+        }
+        let error = number(&reply["profile_error"]["normal_force"]);
+        let worn = changed(unit_ball(), &json!({"profile": reply["profile"]}));
+        let found = good(post("/simulate", &of(&worn, &json!({"path": {"displacement": [0.0]}}))));
+        let force = number(&found["contact"]["normal_force"]) / number(&reply["normal_force"]["after"]);
+        assert!(((force - 1.0).abs() - error).abs() <= 1e-2 * error + 1e-9, "{part}: {force} {error:e}");
+        assert_eq!(codes(&reply).contains(&"worn_profile_error"), error > 1e-2, "{part}: {error:e}");
+        warned += usize::from(error > 1e-2);
+    }
+    assert!(warned > 0, "no error is large");
+    let line = json!({"profile": {"type": "cylinder", "radius": 0.01, "length": 0.01}});
+    assert_refused("/wear", &of(&changed(ball(), &line), &asked(1e-8)), ("invalid_input", "/contact/profile", "line"));
+}
+
+#[test]
 fn a_vertical_edge_has_a_limit_but_no_table_and_a_stuck_punch_keeps_its_profile() {
     let edge = json!({"type": "flat_punch", "radius": 1.2e-4});
     let edged = json!({"type": "sum", "parts": [{"type": "sphere", "radius": 0.01}, edge]});

@@ -15,11 +15,26 @@ pub(crate) struct Calls {
     pub(crate) displacement_integral: usize,
     /// States of a contact.
     pub(crate) states: usize,
+    /// Copies of a slip history.
+    pub(crate) copies: usize,
 }
 
+/// No calls yet.
+const NONE: Calls = Calls { moments: 0, kernel: 0, kernel_slope: 0, displacement_integral: 0, states: 0, copies: 0 };
+
 thread_local! {
-    static CALLS: Cell<Calls> =
-        const { Cell::new(Calls { moments: 0, kernel: 0, kernel_slope: 0, displacement_integral: 0, states: 0 }) };
+    static CALLS: Cell<Calls> = const { Cell::new(NONE) };
+}
+
+/// A member of a struct whose copies are counted.
+#[derive(Debug, Default)]
+pub(crate) struct CountedCopies;
+
+impl Clone for CountedCopies {
+    fn clone(&self) -> CountedCopies {
+        add(|calls| &mut calls.copies);
+        CountedCopies
+    }
 }
 
 /// Counts a call.
@@ -31,7 +46,7 @@ pub(crate) fn add(which: impl Fn(&mut Calls) -> &mut usize) {
 
 /// The calls that `work` makes.
 pub(crate) fn during<T>(work: impl FnOnce() -> T) -> (Calls, T) {
-    CALLS.set(Calls::default());
+    CALLS.set(NONE);
     let result = work();
     (CALLS.get(), result)
 }

@@ -145,11 +145,17 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn virgin(&self) -> Contact {
-        self.clone().at_rest(self.preload)
+        self.at_rest(self.preload)
     }
 
-    /// The contact before its first move, at an indentation, m, and the normal force, N, that belongs to it.
-    fn at_rest(self, preload: (DoubleDouble, f64)) -> Contact {
+    /// The same definition, displacement and load, without pieces of the slip history.
+    pub(crate) fn clone_without_history(&self) -> Contact {
+        Contact { indenter: Arc::clone(&self.indenter), history: SlipHistory::default(), ..*self }
+    }
+
+    /// The contact before its first move, at an indentation, m, and the normal force, N, that belongs to it; without a
+    /// copy of the slip history.
+    fn at_rest(&self, preload: (DoubleDouble, f64)) -> Contact {
         Contact {
             history: SlipHistory::new(&Coulomb(&self.indenter), preload.0),
             displacement: DoubleDouble::ZERO,
@@ -158,7 +164,7 @@ impl Contact {
             dissipated: DoubleDouble::ZERO,
             path_error: 0.0,
             path_kernel: 0.0,
-            ..self
+            ..self.clone_without_history()
         }
     }
 
@@ -167,13 +173,13 @@ impl Contact {
     /// ```
     #[doc = include_str!("../example.txt")]
     /// contact.apply(&slide(0.01))?;
-    /// let rested = contact.clone().without_history();
+    /// let rested = contact.without_history();
     /// assert_eq!((rested.force(), rested.memory_depth()), (0.0, 1));
     /// assert_eq!(rested.summary(), contact.summary());
     /// # Ok::<(), Error>(())
     /// ```
     #[must_use]
-    pub fn without_history(self) -> Contact {
+    pub fn without_history(&self) -> Contact {
         let preload = (self.history.edge().level, self.normal_force);
         self.at_rest(preload)
     }
@@ -197,6 +203,6 @@ impl Contact {
         self.check_indentation(indentation.value())?;
         let half_width = self.indenter.contact_radius(indentation.value());
         self.indenter.line().map_or(Ok(()), |line| line.check_bulk(half_width, normal_force))?;
-        Ok(self.clone().at_rest((indentation, normal_force)))
+        Ok(self.at_rest((indentation, normal_force)))
     }
 }

@@ -126,6 +126,8 @@ impl<'a> SteadyCycle<'a> {
             Drive::Force(amplitude) if amplitude.abs() >= limit && amplitude.abs() > 0.0 => {
                 return Err(Error::ForceExceedsFriction { target: amplitude, limit, part: 1.0 });
             }
+            // Every displacement has the force zero.
+            Drive::Force(_) if limit <= 0.0 => SteadyCycle::of(contact, 0.0),
             Drive::Force(amplitude) => {
                 let all = whole(&contact.indenter, contact.history.edge());
                 let unit = 2.0 * contact.friction * contact.elasticity.e_star();
@@ -320,7 +322,7 @@ impl<'a> SteadyCycle<'a> {
             return vec![0.0; radii.len()];
         }
         let indentation = edge;
-        let mut turned = contact.clone().without_history();
+        let mut turned = contact.without_history();
         let displacement = DoubleDouble::from(self.displacement);
         turned.advance(&PathPoint { indentation, normal_force: contact.normal_force, displacement });
         let work = |(slip, pressure): (Option<f64>, f64)| {

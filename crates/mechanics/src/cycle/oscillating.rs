@@ -150,7 +150,7 @@ impl Oscillation {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<OscillatingCycle, Error> {
         self.check(contact)?;
-        let mut moving = contact.clone().without_history();
+        let mut moving = contact.without_history();
         self.step_to(contact, &mut moving, 0.0, None)?;
         let unit = self.force_unit(contact);
         let (mut before, mut end) = self.lap(contact, &mut moving, (steps, count), keep_going)?;
@@ -279,7 +279,7 @@ impl Oscillation {
                 if target.abs() >= limit && target.abs() > 0.0 {
                     return Err(Error::ForceExceedsFriction { target, limit, part: angle / TAU });
                 }
-                moving.unscaled(moving.position_for(indentation, normal_force, target))
+                moving.displacement_for(indentation, normal_force, target)
             }
         };
         moving.advance(&PathPoint { indentation, normal_force, displacement });
@@ -289,7 +289,7 @@ impl Oscillation {
     /// The displacement of the indenter where it and the machine take `target` together, m.
     fn shared(&self, moving: &Contact, (indentation, normal_force): (DoubleDouble, f64), target: f64) -> DoubleDouble {
         let limit = moving.friction * normal_force;
-        let at = |force: f64| moving.unscaled(moving.position_for(indentation, normal_force, force));
+        let at = |force: f64| moving.displacement_for(indentation, normal_force, force);
         let missing = |force: f64| target - self.compliance * force - at(force).value();
         // Just inside the limit; beyond it the contact slides.
         let most = limit * (1.0 - f64::EPSILON);

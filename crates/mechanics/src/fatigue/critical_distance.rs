@@ -47,7 +47,7 @@ pub(super) fn mean_over_depth(field: &Subsurface, [x, y, _]: [f64; 3], depth: f6
     let rule = |[from, to]: [f64; 2]| {
         let at = |(part, weight): &(f64, f64)| {
             let s = from + part * (to - from);
-            field.at([x, y, depth * s * s]) * (2.0 * s * weight * (to - from))
+            field.stress([x, y, depth * s * s]) * (2.0 * s * weight * (to - from))
         };
         EIGHT_POINTS.iter().map(at).fold(Stress::default(), |sum, part| sum + part)
     };

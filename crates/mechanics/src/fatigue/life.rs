@@ -3,12 +3,11 @@
 //! | curve | first term | second term |
 //! |---|---|---|
 //! | S-N (Basquin 1910): N = cycles (value/reference)^(-k) | reference (2N/(2 cycles))^(-1/k) | none |
-//! | Smith, Watson & Topper (1970): value = max sigma_n eps_a | (sigma_f'^2/E) (2N)^(2b) |
-//! sigma_f' eps_f' (2N)^(b+c) |
+//! | SWT (1970): value = max sigma_n eps_a | (sigma_f'^2/E) (2N)^(2b) | sigma_f' eps_f' (2N)^(b+c) |
 //! | Fatemi & Socie (1988): value = gamma_a (1 + k max sigma_n/sigma_y) | (tau_f'/G) (2N)^b | gamma_f' (2N)^c |
 //!
-//! The two strain-life curves are those of Basquin, Coffin and Manson. Their amplitudes are half of a range, as those
-//! of the [criteria](super::Criterion) are.
+//! SWT are Smith, Watson & Topper. The two strain-life curves are those of Basquin, Coffin and Manson. Their amplitudes
+//! are half of a range, as those of the [criteria](super::Criterion) are.
 
 use std::f64::consts::LN_2;
 

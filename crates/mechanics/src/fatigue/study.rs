@@ -364,7 +364,7 @@ impl<'a> Study<'a> {
             let (stress, off) = if self.averaged > 0.0 {
                 mean_over_depth(&field.0, *place, self.averaged, averaging)
             } else {
-                (field.0.at(*place), 0.0)
+                (field.0.stress(*place), 0.0)
             };
             averaging_error = averaging_error.max(off);
             Ok(self.looked_at(&field, stress, step, (radius, surface)))

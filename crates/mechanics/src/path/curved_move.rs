@@ -59,8 +59,8 @@ fn between<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>>(f
 }
 
 impl Contact {
-    /// Follows a path while `keep_going` returns true; `tolerance` is relative to mu F_N. `visit` is told the part of
-    /// the path that is done, from 0 to 1, and the end of each chord.
+    /// Follows a path that friction holds ([`Contact::check_limit`]) while `keep_going` returns true; `tolerance` is
+    /// relative to mu F_N. `visit` is told the part of the path that is done, from 0 to 1, and the end of each chord.
     pub(crate) fn follow(
         &mut self,
         path: &CurvedMove,
@@ -68,7 +68,6 @@ impl Contact {
         keep_going: &dyn Fn() -> bool,
         visit: &mut dyn FnMut(f64, &Contact),
     ) -> Result<(), Error> {
-        self.check_limit(path)?;
         if matches!(path.normal, NormalPath::Force { .. }) && self.history.edge().level < DoubleDouble::ZERO {
             // A gap closes before any force can rise.
             let touch =
@@ -143,13 +142,13 @@ impl Contact {
     }
 
     /// Refuses a path on which the tangential force does not stay below mu F_N, and reports where it first does not.
-    fn check_limit(&self, path: &CurvedMove) -> Result<(), Error> {
+    pub(super) fn check_limit(&self, path: &CurvedMove) -> Result<(), Error> {
         let TangentialPath::Force { from, to } = path.tangential else { return Ok(()) };
         let room = |part: f64| self.friction * self.normal_force_on(path, part) - between(from, to, part).abs();
         let fails = |part: f64| {
             let limit = self.friction * self.normal_force_on(path, part);
             // A contact in gross slip is at its limit to round-off, and may turn back from there.
-            room(part) < -16.0 * f64::EPSILON * limit || (part >= 1.0 && to.abs() >= limit)
+            room(part) < -16.0 * f64::EPSILON * limit || (part >= 1.0 && to.abs() >= limit && to.abs() > 0.0)
         };
         // F_N is straight or, over the indentation, convex; |F_x| is two straight lines. So on either side of F_x = 0
         // the room is convex, and lowest at an end unless the indentation changes.
@@ -184,8 +183,8 @@ impl Contact {
             TangentialPath::Displacement { from, to } => between(from, to, part),
             TangentialPath::Force { from, to } => {
                 let target = between(from, to, part);
-                let held = self.stuck_position(path, indentation, target);
-                self.unscaled(held.unwrap_or_else(|| self.position_for(indentation, normal_force, target)))
+                let held = self.stuck_position(path, indentation, target).map(|held| self.unscaled(held));
+                held.unwrap_or_else(|| self.displacement_for(indentation, normal_force, target))
             }
         };
         PathPoint { indentation, normal_force, displacement }

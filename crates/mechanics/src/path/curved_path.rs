@@ -35,6 +35,13 @@ pub(crate) struct PathPoint {
     pub(crate) displacement: DoubleDouble,
 }
 
+impl CurvedMove {
+    /// Whether the load stays as it is, so that one straight move leads to the end.
+    pub(super) fn has_constant_load(&self) -> bool {
+        matches!(self.normal, NormalPath::Indentation { from, to } if from == to)
+    }
+}
+
 impl Contact {
     /// Where the contact is.
     pub(crate) fn path_point(&self) -> PathPoint {

@@ -24,10 +24,19 @@ struct SlipFront {
 }
 
 impl Contact {
+    /// The displacement U, m, of [`Contact::position_for`]; the present one where friction holds nothing, because then
+    /// every displacement has the force zero.
+    pub(crate) fn displacement_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
+        if self.friction * normal_force <= 0.0 {
+            return self.displacement;
+        }
+        self.unscaled(self.position_for(indentation, normal_force, target))
+    }
+
     /// The scaled displacement W, m, at which the contact carries the tangential force `target`, N, once it has moved
     /// straight to `indentation` and the `normal_force`, N, that belongs to it. Friction must be able to hold the
     /// target.
-    pub(crate) fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
+    fn position_for(&self, indentation: DoubleDouble, normal_force: f64, target: f64) -> DoubleDouble {
         let wanted = target / self.force_unit();
         // Just below the limit the low digits of the product decide how much still sticks.
         let room = (DoubleDouble::from(normal_force) * self.friction - DoubleDouble::from(target.abs())).value()

@@ -33,7 +33,9 @@ impl Contact {
     ///
     /// # Errors
     /// [`Error::OutOfRange`] for a target outside [`range`](mod@range); [`Error::ForceExceedsFriction`] for a
-    /// tangential force that friction cannot hold all the way.
+    /// tangential force that friction cannot hold all the way; [`Error::BeyondProfile`], [`Error::NotConvexEnough`] and
+    /// [`Error::BeyondReferenceLength`] for a normal target that the profile has no contact for, and
+    /// [`Error::BulkNeedsConstantLoad`] for any of a line contact with a bulk stress.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -91,12 +93,23 @@ impl Contact {
             visit(1.0, self);
             return Ok(());
         }
-        // A path of many chords can be interrupted half-way; the cost of a copy is negligible against it.
-        let before = self.clone();
-        let followed = self.follow(&CurvedMove { tangential, normal }, tolerance, keep_going, visit);
-        if followed.is_err() {
-            *self = before;
+        let path = CurvedMove { tangential, normal };
+        self.check_limit(&path)?;
+        if path.has_constant_load() {
+            self.advance(&self.point_on(&path, 1.0));
+            visit(1.0, self);
+            return Ok(());
         }
+        // A path of many chords can be interrupted half-way.
+        let before = self.clone_without_history();
+        self.history.mark();
+        let followed = self.follow(&path, tolerance, keep_going, visit);
+        if followed.is_err() {
+            self.history.return_to_mark();
+            let history = std::mem::take(&mut self.history);
+            *self = Contact { history, ..before };
+        }
+        self.history.unmark();
         followed
     }
 
@@ -116,6 +129,10 @@ impl Contact {
             Some(Normal::NormalForce(force)) => {
                 let from = self.normal_force();
                 let to = range::check_normal_force(if step.relative { from + force } else { force })?;
+                // The load that is carried already does not move the edge by the rounding of its indentation.
+                if to.to_bits() == from.to_bits() && here.value() >= 0.0 {
+                    return Ok(NormalPath::Indentation { from: here, to: here });
+                }
                 self.check_indentation(self.indentation_for(to).value())?;
                 NormalPath::Force { from, to }
             }

@@ -50,7 +50,7 @@ pub fn lower_bound(contact: &Contact, reversals: usize, keep_going: &dyn Fn() ->
     let contact = &*face;
     let (profile, edge) = (&*contact.indenter, contact.contact_radius());
     let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
-    if vertical || edge <= 0.0 || contact.friction <= 0.0 {
+    if vertical || edge <= cutoff || contact.friction <= 0.0 {
         return Some(0.0);
     }
     let grid = Grid::new(profile, cutoff, edge);

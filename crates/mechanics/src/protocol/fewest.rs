@@ -1,5 +1,7 @@
 //! The fewest reversals that leave no more than a given stress.
 
+use std::num::NonZeroUsize;
+
 use super::Design;
 
 /// How many smaller numbers of reversals are checked after bisection.
@@ -17,7 +19,12 @@ pub enum Fewest {
 ///
 /// # Errors
 /// Those of `design`, which is asked for a number of reversals.
-pub fn fewest<E>(largest: f64, most: usize, mut design: impl FnMut(usize) -> Result<Design, E>) -> Result<Fewest, E> {
+pub fn fewest<E>(
+    largest: f64,
+    most: NonZeroUsize,
+    mut design: impl FnMut(usize) -> Result<Design, E>,
+) -> Result<Fewest, E> {
+    let most = most.get();
     let (mut low, mut high) = (0, 1);
     let mut found = loop {
         let tried = design(high)?;

@@ -44,7 +44,7 @@ impl Contact {
 
     /// The displacement, m, of the face that stands for a displacement, m, of the virgin line contact.
     fn face_displacement(&self, line: &LineContact, displacement: f64) -> Result<f64, Error> {
-        let mut contact = self.clone().without_history();
+        let mut contact = self.without_history();
         contact.apply(&Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() })?;
         if contact.state().regime == Regime::GrossSlip {
             return Ok(self.virgin_face().gross_slip_displacement().copysign(displacement));

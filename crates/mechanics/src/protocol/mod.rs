@@ -102,7 +102,7 @@ pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f6
     if let Some(line) = contact.indenter.line() {
         let EqualPeaks { displacements, cutoff_radius: cutoff } =
             equal_peaks(&contact.virgin_face(), reversals, cutoff_radius)?;
-        let (displacements, _) = contact.clone().without_history().by_forces(line, &displacements)?;
+        let (displacements, _) = contact.without_history().by_forces(line, &displacements)?;
         return Ok(EqualPeaks { displacements, cutoff_radius: cutoff });
     }
     let edge = contact.contact_radius();
@@ -193,7 +193,9 @@ fn minimax_to(
 ) -> Vec<Minimax> {
     let edge = *contact.history.edge();
     let EvaluationRange { from: cutoff, vertical, .. } = EvaluationRange::of(contact);
-    if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical {
+    // An annulus as thin as the rounding of its radius has no room for a kink.
+    let thin = cutoff >= edge.radius;
+    if reversals == 0 || contact.friction <= 0.0 || edge.level.value() <= 0.0 || vertical || thin {
         return Vec::new();
     }
     let problem = Problem { indenter: &contact.indenter, edge, cutoff, reversals, keep_going };

@@ -98,7 +98,8 @@ quantities! {
         "A stress of a body along x over the tangential force that it comes with.";
     MachineStiffness = "stiffness", MACHINE_STIFFNESS: 1e-9 to 1e30 "N/m",
         "The stiffness of a machine in series with the contact.";
-    Phase = "phase", "Phase of the normal load of a cycle.";
+    Phase = "phase", PHASE: -1e9 to 1e9 "rad",
+        "Phase of the normal load of a cycle, or between the axes of an ellipse.";
     FatigueWeight = "weight", FATIGUE_WEIGHT: 0.0 to 100.0 "",
         "The weight of a normal or hydrostatic stress in a fatigue criterion.";
     YieldStress = "yield_stress", YIELD_STRESS: 1e-3 to 1e18 "Pa", "The yield stress of a fatigue criterion.";
@@ -113,6 +114,9 @@ quantities! {
         "The exponent of a fatigue strength or ductility; lives end, so it is negative.";
     CriticalLength = "length", CRITICAL_LENGTH: 1e-9 to 1.0 "m", "A critical distance of a material.";
     SpringCount = "count", SPRING_COUNT: 2.0 to 1e6 "", "How many springs the foundation may have.";
+    RingTolerance = "tolerance", RING_TOLERANCE: 1e-300 to 1e300 "",
+        "What the error of a path by rings is to stay below, over mu F_N.";
+    Turns = "turns", TURNS: -1e9 to 1e9 "", "A place on an ellipse, in turns from its beginning.";
     RingCount = "count", RING_COUNT: 4.0 to 160.0 "", "How many rings a contact may have that is moved in the plane.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";

@@ -24,6 +24,8 @@ pub(super) struct Field {
     stress_error: f64,
     /// The contact under the load at the end.
     pressed: Contact,
+    /// The exact contact at the end of a path along one line, and its direction.
+    line: Option<(Contact, Vector)>,
 }
 
 impl Field {
@@ -74,7 +76,14 @@ impl Field {
             [level.dissipated[ring] * energy * rings, 0.0]
         };
         let (slip, work) = (blended(&of_slip), blended(&of_work));
-        Field { reach: scene.reach, ratio, slip, work, stress_error, pressed: scene.pressed.clone() }
+        Field { reach: scene.reach, ratio, slip, work, stress_error, pressed: scene.pressed.clone(), line: None }
+    }
+
+    /// At the end of a path along one line.
+    pub(super) fn along_line(scene: &Scene<'_>, contact: Contact, direction: Vector) -> Field {
+        let (ratio, slip, work) = (Vec::new(), Vec::new(), Vec::new());
+        let line = Some((contact, direction));
+        Field { reach: scene.reach, ratio, slip, work, stress_error: 0.0, pressed: scene.pressed.clone(), line }
     }
 
     fn share(&self, radius: f64) -> f64 {
@@ -118,7 +127,10 @@ impl Solution {
     /// Shear stress along x and y, Pa, at each of `radii`, m; at most mu p, and zero outside the contact.
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<[f64; 2]> {
-        let Field { ratio, pressed, .. } = &self.field;
+        let Field { ratio, pressed, line, .. } = &self.field;
+        if let Some((contact, direction)) = line {
+            return contact.shears(radii).into_iter().map(|shear| direction.map(|part| part * shear + 0.0)).collect();
+        }
         let shear = |(&radius, pressure): (&f64, f64)| {
             // The rings in contact are fewer than all where the contact was larger.
             let part = self.field.share(radius) * self.count as f64 / ratio.len().max(1) as f64;
@@ -133,13 +145,20 @@ impl Solution {
     /// contact grew later, it includes what the indenter moved before it touched.
     #[must_use]
     pub fn slip(&self, radius: f64) -> Option<[f64; 2]> {
+        if let Some((contact, direction)) = &self.field.line {
+            return contact.slips(&[radius])[0].map(|slip| direction.map(|part| part * slip + 0.0));
+        }
         self.field.touches(radius).then(|| between(&self.field.slip, self.field.share(radius)).map(|slip| slip + 0.0))
     }
 
-    /// Friction work per area since the start, J/m^2; zero outside the largest contact of the path.
+    /// Friction work per area since the start, J/m^2; zero outside the largest contact of the path, and not a number
+    /// along one line, where no rings keep it.
     #[must_use]
     pub fn friction_work(&self, radius: f64) -> f64 {
-        let Field { work, reach, .. } = &self.field;
+        let Field { work, reach, line, .. } = &self.field;
+        if line.is_some() {
+            return f64::NAN;
+        }
         if radius > *reach { 0.0 } else { between(work, self.field.share(radius))[0].max(0.0) }
     }
 }

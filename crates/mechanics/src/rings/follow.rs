@@ -8,8 +8,9 @@ use super::mesh::{Mesh, Vector};
 use super::solution::{Blend, Solution};
 use super::{PlanarMove, PlanarTarget, TURNED};
 use crate::contact::Contact;
-use crate::contact::state::{Move, Normal, Setup, Tangential};
+use crate::contact::state::{Move, Normal, Setup, State, Tangential};
 use crate::numerics::double_double::DoubleDouble;
+use crate::path::curved_move::DEFAULT_TOLERANCE;
 use crate::profile::Profile;
 use crate::range;
 use crate::range::error::Error;
@@ -38,7 +39,8 @@ pub struct Options {
     /// Number of rings by [`range::RING_COUNT`], also along a line; left out, as many as the tolerance needs, and none
     /// as long as the moves lead along one line.
     pub count: Option<usize>,
-    /// What [`Solution::force_error`] is to stay below, as far as steps and rings suffice.
+    /// What [`Solution::force_error`] is to stay below, by [`range::RING_TOLERANCE`], as far as steps and rings
+    /// suffice.
     pub tolerance: f64,
 }
 
@@ -134,10 +136,12 @@ fn along(step: &PlanarMove, [x, y]: Vector) -> Move {
 
 /// Follows a path from the virgin contact, while `keep_going` returns true, which is asked at every step.
 ///
-/// As long as the moves lead along one line and no number of rings is given, the states are those of the exact contact.
+/// As long as the moves lead along one line and no number of rings is given, the states are those of the exact contact;
+/// where all of them do, no rings are followed at all.
 ///
 /// # Errors
-/// Those of [`Contact::new`] and [`Contact::apply`] with the move that they are about;
+/// [`Error::OutOfRange`] for numbers of the options and of arcs outside [`range`](mod@range); those of [`Contact::new`]
+/// and [`Contact::apply`] with the move that they are about;
 /// [`Error::NoStressField`] for a profile whose pressure is not known; [`Error::Interrupted`].
 ///
 /// ```
@@ -166,20 +170,30 @@ pub fn follow<P: Into<Shared<Profile>>>(
     if let Some(count) = options.count {
         range::RING_COUNT.check(count as f64).map_err(of_contact)?;
     }
+    range::RING_TOLERANCE.check(options.tolerance).map_err(of_contact)?;
+    for (index, target) in moves.iter().enumerate().filter_map(|(index, step)| Some((index, step.tangential?))) {
+        target.check().map_err(|error| Refusal { index: Some(index), error })?;
+    }
     let scene = Scene::new(setup, moves)?;
+    if options.count.is_none() && straight_moves(moves).0 == moves.len() {
+        let (contact, direction, states) = scene.exact(keep_going)?;
+        return Ok(Solution::along_line(&scene, contact, direction, &states));
+    }
     let (mut count, mut length) = options.first();
     let mut last = f64::INFINITY;
     for refinement in 0.. {
         let (solution, longest) = scene.pass(count, length, keep_going)?;
         let [by_steps, by_rings] = solution.errors;
-        let finer = [by_steps > 0.5 * options.tolerance, by_rings > 0.5 * options.tolerance];
         let possible = [longest > SHORTEST_STEP, options.count.is_none() && count < CHOSEN_RINGS[1]];
+        // Beside what the most rings leave, less than half as much by the steps gains nothing.
+        let left = if possible[1] { options.tolerance } else { options.tolerance.max(by_rings) };
+        let finer = [by_steps > 0.5 * left, by_rings > 0.5 * options.tolerance];
         let wanted = [finer[0] && possible[0], finer[1] && possible[1]];
         let error = by_steps + by_rings;
         // Where rounding is what is left, as on arcs of a billion times gross slip, more steps gain nothing.
         let gained = error < last;
         if error <= options.tolerance || wanted == [false; 2] || refinement == REFINEMENTS || !gained {
-            return if options.count.is_some() { Ok(solution) } else { scene.with_exact(solution) };
+            return if options.count.is_some() { Ok(solution) } else { scene.with_exact(solution, keep_going) };
         }
         last = error;
         if wanted[0] {
@@ -352,8 +366,13 @@ impl<'a> Scene<'a> {
                     level.step(Target::Displacement(here));
                     continue;
                 }
-                let limit: f64 = level.bounds.iter().sum();
-                if here[0].hypot(here[1]) >= limit {
+                let (limit, wanted) = (level.bounds.iter().sum::<f64>(), here[0].hypot(here[1]));
+                if limit <= 0.0 && wanted <= 0.0 {
+                    // Every displacement has the force zero.
+                    level.step(Target::Displacement(level.displacement));
+                    continue;
+                }
+                if wanted >= limit {
                     let size = target[0].hypot(target[1]) * self.unit_force;
                     return Err(Error::ForceExceedsFriction { target: size, limit: limit * self.unit_force, part });
                 }
@@ -377,16 +396,27 @@ impl<'a> Scene<'a> {
     }
 
     /// The solution with the exact states of the first moves, as far as they lead along one line.
-    fn with_exact(&self, mut solution: Solution) -> Result<Solution, Refusal> {
+    fn with_exact(&self, mut solution: Solution, keep_going: &dyn Fn() -> bool) -> Result<Solution, Refusal> {
+        let (_, direction, states) = self.exact(keep_going)?;
+        solution.replace(&states, direction);
+        Ok(solution)
+    }
+
+    /// The exact contact after the first moves, as far as they lead along one line, that line's direction, and the
+    /// states after each of them.
+    fn exact(&self, keep_going: &dyn Fn() -> bool) -> Result<(Contact, Vector, Vec<State>), Refusal> {
         let (count, direction) = straight_moves(self.moves);
         let mut exact = self.contact.clone();
         let states = self.moves.iter().take(count).enumerate().map(|(index, step)| {
-            exact.apply(&along(step, direction)).map_err(|error| Refusal { index: Some(index), error })?;
+            let refused = |error| Refusal { index: Some(index), error };
+            if !keep_going() {
+                return Err(refused(Error::Interrupted));
+            }
+            exact.apply_while(&along(step, direction), DEFAULT_TOLERANCE, keep_going).map_err(refused)?;
             Ok(exact.state())
         });
         let states: Vec<_> = states.collect::<Result<_, _>>()?;
-        solution.replace(&states, direction);
-        Ok(solution)
+        Ok((exact, direction, states))
     }
 }
 

@@ -58,6 +58,7 @@ pub struct PlanarContact {
     stick_radius: f64,
     dissipated: f64,
     elastic: f64,
+    unsettled: f64,
     /// The area of a ring over pi, m^2; zero without a contact.
     area: f64,
     /// Those that touch, from the centre outwards.
@@ -98,6 +99,13 @@ impl PlanarContact {
     #[must_use]
     pub fn force(&self) -> [f64; 2] {
         self.force
+    }
+
+    /// The largest force of a ring that the search for its slip has left in the last step, N: rounding, unless the
+    /// search did not end.
+    #[must_use]
+    pub fn unsettled_force(&self) -> f64 {
+        self.unsettled
     }
 
     /// The state after the last step.
@@ -215,6 +223,7 @@ impl PlanarLaw {
             stick_radius: if self.contact.friction() > 0.0 { self.contact.contact_radius() } else { 0.0 },
             dissipated: 0.0,
             elastic: 0.0,
+            unsettled: 0.0,
             area: 0.0,
             rings: Vec::new(),
         };
@@ -419,7 +428,7 @@ impl PlanarLaw {
         traction.clear();
         traction.resize(count, [0.0; 2]);
         if self.contact.friction() > 0.0 {
-            solve(mesh.stiffness(false), bounds, forces, traction, slip, workspace);
+            contact.unsettled = solve(mesh.stiffness(false), bounds, forces, traction, slip, workspace) * unit;
         }
         contact.force = [0.0; 2];
         // The innermost ring that slips.

@@ -29,6 +29,8 @@ pub(super) struct Level {
     /// Work of the tangential force.
     pub(super) work: f64,
     pub(super) elastic: f64,
+    /// The largest force that the search for a slip has left, in any step.
+    pub(super) unsettled: f64,
     /// Friction work of each ring.
     pub(super) dissipated: Vec<f64>,
     /// Which rings have slipped in the present move.
@@ -52,6 +54,7 @@ impl Level {
             force: [0.0; 2],
             work: 0.0,
             elastic: 0.0,
+            unsettled: 0.0,
             dissipated: vec![0.0; mesh.count],
             slipped: vec![false; mesh.count],
             slip: still.clone(),
@@ -90,7 +93,9 @@ impl Level {
                 *slip = ahead;
             }
         }
-        solve(stiffness, &self.bounds, &self.forces, &mut self.traction, &mut self.slip, &mut self.workspace);
+        let left =
+            solve(stiffness, &self.bounds, &self.forces, &mut self.traction, &mut self.slip, &mut self.workspace);
+        self.unsettled = self.unsettled.max(left);
         // From here on `memory` is the displacement of the rings, without that of the indenter where a force is given.
         for (ring, slip) in self.memory.iter_mut().zip(&self.slip) {
             *ring = [ring[0] - slip[0], ring[1] - slip[1]];

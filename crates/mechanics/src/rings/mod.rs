@@ -22,6 +22,8 @@ pub use solution::{PlanarState, Solution};
 use std::f64::consts::TAU;
 
 use crate::contact::state::Normal;
+use crate::range::error::Error;
+use crate::range::{self, Range};
 
 /// A slip up to this, relative to the displacement of gross slip, is rounding.
 const NO_SLIP: f64 = 1e-12;
@@ -49,6 +51,22 @@ pub enum PlanarTarget {
     Force([f64; 2]),
     /// Displacement along an ellipse.
     Arc(Arc),
+}
+
+impl PlanarTarget {
+    /// Refuses numbers that are no target.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let both = |range: &Range, pair: &[f64; 2]| pair.iter().try_for_each(|value| range.check(*value).map(drop));
+        match self {
+            PlanarTarget::Displacement(to) => both(&range::DISPLACEMENT, to),
+            PlanarTarget::Force(to) => both(&range::FORCE, to),
+            PlanarTarget::Arc(Arc { radii, phase, turns }) => {
+                both(&range::DISPLACEMENT, radii)?;
+                both(&range::TURNS, turns)?;
+                range::PHASE.check(*phase).map(drop)
+            }
+        }
+    }
 }
 
 /// A part of the ellipse x = a cos(2 pi t), y = b sin(2 pi t + phase).

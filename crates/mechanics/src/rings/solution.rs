@@ -4,6 +4,7 @@ use super::field::Field;
 use super::follow::Scene;
 use super::level::Level;
 use super::mesh::Vector;
+use crate::contact::Contact;
 use crate::contact::state::{Regime, State};
 
 /// The state after a move in the plane.
@@ -36,7 +37,7 @@ pub struct PlanarState {
 pub struct Solution {
     /// The states after the moves.
     pub states: Vec<PlanarState>,
-    /// Number of rings.
+    /// Number of rings; zero along one line, which the exact contact follows.
     pub count: usize,
     /// Steps of the finest discretisation on the whole path.
     pub steps: usize,
@@ -127,6 +128,11 @@ impl Blend {
             let relative = if unit > 0.0 { of_force[kind] / unit } else { 0.0 };
             self.errors[kind] = self.errors[kind].max(relative).max(of_displacement[kind]);
         }
+        // What the search for the slip has left, of as many rings as there are.
+        let unsettled = levels.iter().map(|level| level.mesh.count as f64 * level.unsettled).fold(0.0, f64::max);
+        if unit > 0.0 {
+            self.errors[0] = self.errors[0].max(unsettled / unit);
+        }
         let share = limit / unit;
         if share > 0.0 {
             self.errors[1] = self.errors[1].max(share * scene.least_error(touching(fine)));
@@ -188,29 +194,42 @@ fn stick(scene: &Scene<'_>, level: &Level, indentation: f64, radius: f64) -> (f6
 }
 
 impl Solution {
+    /// A path along one line, by the exact contact after it and the states on the way: without rings.
+    pub(super) fn along_line(scene: &Scene<'_>, contact: Contact, direction: Vector, states: &[State]) -> Solution {
+        let errors = [contact.path_error(), 0.0];
+        let states = states.iter().map(|state| planar(state, direction)).collect();
+        let field = Field::along_line(scene, contact, direction);
+        Solution { states, count: 0, steps: 0, work_error: errors[0], errors, field }
+    }
+
     /// Puts the exact states of the first moves, along a line, in the place of those of the rings, and begins the work
     /// after them there.
     pub(super) fn replace(&mut self, exact: &[State], direction: Vector) {
-        let pair = |size: f64| direction.map(|component| component * size + 0.0);
         let mut ahead = 0.0;
         for (state, exact) in self.states.iter_mut().zip(exact) {
             ahead = exact.dissipated_energy - state.dissipated_energy;
-            *state = PlanarState {
-                displacement: pair(exact.displacement),
-                force: pair(exact.force),
-                indentation: exact.indentation,
-                normal_force: exact.normal_force,
-                contact_radius: exact.contact_radius,
-                stick_radius: exact.stick_radius,
-                regime: exact.regime,
-                dissipated_energy: exact.dissipated_energy,
-                elastic_energy: exact.elastic_energy,
-                work: exact.dissipated_energy + exact.elastic_energy,
-            };
+            *state = planar(exact, direction);
         }
         for later in self.states.iter_mut().skip(exact.len()) {
             later.dissipated_energy += ahead;
             later.work += ahead;
         }
+    }
+}
+
+/// A state along the line of this direction.
+fn planar(exact: &State, direction: Vector) -> PlanarState {
+    let pair = |size: f64| direction.map(|component| component * size + 0.0);
+    PlanarState {
+        displacement: pair(exact.displacement),
+        force: pair(exact.force),
+        indentation: exact.indentation,
+        normal_force: exact.normal_force,
+        contact_radius: exact.contact_radius,
+        stick_radius: exact.stick_radius,
+        regime: exact.regime,
+        dissipated_energy: exact.dissipated_energy,
+        elastic_energy: exact.elastic_energy,
+        work: exact.dissipated_energy + exact.elastic_energy,
     }
 }

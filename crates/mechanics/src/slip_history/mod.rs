@@ -16,6 +16,7 @@ mod instants;
 pub(crate) mod limit;
 mod packed;
 mod piece;
+mod undo;
 
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::{Moments, Point, Ring};
@@ -41,6 +42,10 @@ pub(super) struct SlipHistory {
     /// y*, where the slip of the last move began; `None` if nothing slipped. A move that closes an inner loop exactly
     /// wipes out pieces that it left stuck, so this may lie outside the inner end of the top piece.
     slip_from: Option<Point>,
+    /// What a move that may yet fail needs to be undone.
+    mark: Option<Box<undo::Mark>>,
+    #[cfg(test)]
+    _copies: super::cells::call_count::CountedCopies,
 }
 
 impl SlipHistory {
@@ -178,7 +183,7 @@ impl SlipHistory {
 
     /// Out of contact, or just touching: a position and nothing else.
     fn place(&mut self, limit: &impl Limit, indentation: DoubleDouble, position: DoubleDouble) {
-        self.pieces.clear();
+        self.cut_to(0);
         self.total = Sums::default();
         self.edge = edge_at(limit, indentation);
         self.position = position;
@@ -222,7 +227,7 @@ impl SlipHistory {
         if dd.value() < 0.0 {
             work += self.unloading_work(limit, d1, w1);
             while self.pieces.last().is_some_and(|top| top.inner.level >= d1) {
-                self.pieces.pop();
+                self.pop();
             }
             self.edge = edge_at(limit, d1);
             self.position = w1;
@@ -278,7 +283,7 @@ impl SlipHistory {
             work += slipping.work(&top.moments_to(limit, &outer), &top.line, excess, &ring);
             excess = inward.excess.value();
             outer = top.inner;
-            self.pieces.pop();
+            self.pop();
             if self.pieces.is_empty() {
                 work += slipping.core_work(excess, outer.radius);
             }

@@ -58,7 +58,7 @@ impl Packed for SlipHistory {
             }
             pieces.push(Piece::new(inner, line, Packed::unpack(reader)?, None));
         }
-        let history = SlipHistory { pieces, edge, total, position, reference, slip_from };
+        let history = SlipHistory { pieces, edge, total, position, reference, slip_from, ..SlipHistory::default() };
         (history.in_contact() != history.pieces.is_empty()).then_some(history)
     }
 }

@@ -252,9 +252,12 @@ impl Springs {
     /// The displacement, m, that gives a tangential force, N: bisected, since the force only grows with it.
     fn displacement_for(&self, target: f64, keep_going: &dyn Fn() -> bool) -> Result<f64, Error> {
         let limit = self.virgin.friction * self.normal_force();
+        if limit <= 0.0 && target.abs() <= 0.0 {
+            return Ok(self.displacement);
+        }
         if target.abs() >= limit {
             let way = (target - self.force()).abs();
-            // Without friction no force can be held, and the move has no length.
+            // Without friction the force is zero, and the move has no length.
             let part = if way > 0.0 { (limit - target.signum() * self.force()) / way } else { 0.0 };
             return Err(Error::ForceExceedsFriction { target, limit, part: part.clamp(0.0, 1.0) });
         }

@@ -18,8 +18,9 @@ use std::sync::OnceLock;
 use crate::contact::Contact;
 pub use crate::elasticity::Side;
 use crate::profile::{LineContact, Profile, Ring};
-use crate::range;
 use crate::range::error::Error;
+use crate::range::unit_prefix::short;
+use crate::range::{self, Quantity};
 use kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use line::LineField;
 use mesh::{Mesh, Source};
@@ -33,6 +34,8 @@ const FAR: f64 = 8.0;
 const NUMERICAL: f64 = 4e-12;
 /// How many times the error of a traction the stress below it may err: its largest component under a unit traction.
 const GAIN: f64 = 4.0;
+/// How far from the middle stresses are given, in contact radii: twelve digits of the pressure are left there.
+pub const FURTHEST: f64 = 1e6;
 /// Depth, in contact radii, below which a point is taken as one of the surface: the stress changes with its root.
 const SURFACE: f64 = 1e-36;
 
@@ -67,7 +70,7 @@ impl Contact {
     ///
     /// // Hertz: under nu = 0.3 the largest von Mises stress is 0.62 times the pressure, at the depth 0.48 a.
     /// let field = contact.subsurface(Side::Second, 0.3)?;
-    /// let stress = field.at([0.0, 0.0, 0.0480864485292895]);
+    /// let stress = field.at([0.0, 0.0, 0.0480864485292895])?;
     /// assert!((stress.von_mises() / contact.pressure(0.0) - 0.620041003909043).abs() < 1e-12);
     /// # Ok::<(), Error>(())
     /// ```
@@ -105,9 +108,32 @@ impl Contact {
 }
 
 impl Subsurface {
-    /// The stress at x, y, z, m, with z of at least zero; not finite where it is infinite.
-    #[must_use]
-    pub fn at(&self, [x, y, z]: [f64; 3]) -> Stress {
+    /// The stress at x, y, z, m; not finite where it is infinite.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] for a place that is no number, lies above the surface, or is further than
+    /// [`FURTHEST`] contact radii from the middle.
+    pub fn at(&self, place: [f64; 3]) -> Result<Stress, Error> {
+        for value in place {
+            range::PLACE.check(value)?;
+        }
+        let [x, y, z] = place;
+        let refused = |value, allowed| Err(Error::OutOfRange { quantity: Quantity::Place, value, allowed });
+        if z < 0.0 {
+            return refused(z, "a depth of at least 0 m".to_owned());
+        }
+        let (distance, furthest) = (x.hypot(y).hypot(z), FURTHEST * self.contact.contact_radius());
+        if furthest > 0.0 && distance > furthest {
+            return refused(
+                distance,
+                format!("up to {FURTHEST:e} contact radii from the middle, {} m", short(furthest)),
+            );
+        }
+        Ok(self.stress(place))
+    }
+
+    /// The stress at a place near the contact, z of at least zero.
+    pub(crate) fn stress(&self, [x, y, z]: [f64; 3]) -> Stress {
         let radius = self.contact.contact_radius();
         if let Some(field) = &self.line {
             return self.below_line(field, x, z);

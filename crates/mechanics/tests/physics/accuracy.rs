@@ -295,7 +295,7 @@ fn estimates_of_what_tables_leave_open_are_honest() {
             let across = |random: &mut Random| figures.contact_radius * random.within(-1.5, 1.5);
             let depth = figures.contact_radius * 10_f64.powf(random.within(-2.0, 0.5));
             let place = [across(&mut random), across(&mut random), depth];
-            let [ours, truth] = fields.each_ref().map(|field| field.at(place).components());
+            let [ours, truth] = fields.each_ref().map(|field| field.at(place).unwrap().components());
             let error = ours.iter().zip(truth).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max);
             below.compare(&format!("{name} at {place:?}"), error / figures.unit_pressure(), fields[0].error());
         }

@@ -13,7 +13,7 @@ fn mean(contact: &Contact, [x, y, _]: [f64; 3], depth: f64) -> Stress {
     let count = 400;
     let at = |index: u32| {
         let u = (f64::from(index) + 0.5) / f64::from(count);
-        field.at([x, y, depth * u.powi(3)]) * (3.0 * u * u / f64::from(count))
+        field.at([x, y, depth * u.powi(3)]).unwrap() * (3.0 * u * u / f64::from(count))
     };
     (0..count).map(at).fold(Stress::default(), |sum, part| sum + part)
 }
@@ -29,8 +29,9 @@ fn the_value_is_that_of_the_stress_at_half_the_distance_or_of_its_mean_over_twic
         let length = 1e-4 * 10f64.powf(random.within(-2.0, 0.5));
         let unit = contact.summary().unit_pressure();
         let tolerance = [1e-4, 1e-3][case as usize % 2];
-        let deep =
-            |contact: &Contact| contact.subsurface(BODY.0, BODY.1).unwrap().at([surface[0], surface[1], 0.5 * length]);
+        let deep = |contact: &Contact| {
+            contact.subsurface(BODY.0, BODY.1).unwrap().at([surface[0], surface[1], 0.5 * length]).unwrap()
+        };
         let over = |contact: &Contact| mean(contact, surface, 2.0 * length);
         let fineness = (3e-6 * unit, 0.05 * unit);
         for (distance, path) in [

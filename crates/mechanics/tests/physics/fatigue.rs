@@ -417,7 +417,7 @@ const PLACE: [f64; 3] = [-0.98, 0.0, 0.02];
 fn stress_paths(cycle: &Cycle, instants: usize, places: &[[f64; 3]]) -> Vec<Vec<Stress>> {
     let states = cycle.states(instants, &|| true).unwrap();
     let fields: Vec<_> = states.iter().map(|state| state.subsurface(BODY.0, BODY.1).unwrap()).collect();
-    places.iter().map(|place| fields.iter().map(|field| field.at(*place)).collect()).collect()
+    places.iter().map(|place| fields.iter().map(|field| field.at(*place).unwrap()).collect()).collect()
 }
 
 #[test]

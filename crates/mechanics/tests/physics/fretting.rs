@@ -56,7 +56,7 @@ fn ruiz_multiplies_half_ranges_by_the_largest_tension() {
         };
         let half = |[low, high]: [f64; 2]| 0.5 * (high - low);
         let damage = half(ends(&|state| state.shear(radius))) * half(ends(&|state| state.slip(radius).unwrap()));
-        let tension = ends(&|state| state.subsurface(BODY.0, BODY.1).unwrap().at(place).xx)[1].max(0.0);
+        let tension = ends(&|state| state.subsurface(BODY.0, BODY.1).unwrap().at(place).unwrap().xx)[1].max(0.0);
         let (one, other) = (found.values[0][index], found.values[1][index]);
         assert!((one - damage).abs() <= 2e-3 * damage, "{place:?}: {one:e} {damage:e}");
         assert!((other - tension * damage).abs() <= 4e-3 * tension * damage, "{place:?}: {other:e}");
@@ -90,7 +90,7 @@ fn in_gross_slip_ruiz_is_exact_and_has_no_tension_where_all_is_pressed() {
 /// The stresses of a place over a cycle of straight moves, at so many instants that the curve is within `sag` of the
 /// chords between them, and these shorter than `length`, Pa.
 fn curve(cycle: &Cycle, place: [f64; 3], moves: &[Move], fineness: (f64, f64)) -> Vec<Stress> {
-    curve_of(cycle, moves, fineness, |contact| contact.subsurface(BODY.0, BODY.1).unwrap().at(place))
+    curve_of(cycle, moves, fineness, |contact| contact.subsurface(BODY.0, BODY.1).unwrap().at(place).unwrap())
 }
 
 /// The same of a stress that each state has.

@@ -20,6 +20,7 @@ mod extrema;
 mod falling_reversals;
 mod fatigue;
 mod few_springs;
+mod force_moves;
 mod fretting;
 mod hard_cases;
 mod laws;

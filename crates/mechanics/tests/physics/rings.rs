@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use stickslip_mechanics::profile::LoadCurve;
+use stickslip_mechanics::profile::{Cone, LoadCurve};
 use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarState, PlanarTarget, Solution, follow};
 use stickslip_mechanics::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Tangential};
 
@@ -277,4 +277,71 @@ fn without_friction_or_contact_nothing_is_carried() {
     // The move that lifts off slips until then.
     let held = |state: &PlanarState| state.force[0].hypot(state.force[1]) > 0.0 || state.contact_radius > 0.0;
     assert!(!apart.states.iter().any(held));
+}
+
+#[test]
+fn steps_are_not_refined_far_beyond_what_the_most_rings_leave() {
+    // Under the tip of a cone even the most rings err by more than this tolerance.
+    let setup = Setup { profile: Profile::Cone(Cone::new(0.02).unwrap()), ..UNIT.setup() };
+    let full = Contact::new(setup.clone()).unwrap().gross_slip_displacement();
+    let path = ellipse([0.6 * full, 0.3 * full], 16, 1);
+    let solution = solve(setup, &path, &Options { count: None, tolerance: 1e-5 });
+    let error = solution.force_error();
+    assert!(solution.count == 160 && error > 2.0 / 160.0_f64.powi(2) && error < 4e-4, "{error:e}");
+    assert!(solution.steps <= 1_500, "{} steps", solution.steps);
+}
+
+#[test]
+fn two_hundred_straight_moves_are_those_of_the_exact_contact_without_a_ring() {
+    let mut random = Random(7);
+    let mut exact = UNIT.contact();
+    let mut moves = Vec::new();
+    for _ in 0..200 {
+        let along = random.within(-0.9, 0.9);
+        moves.push(to(PlanarTarget::Displacement([0.6 * along, 0.8 * along])));
+        let step = Move { tangential: Some(Tangential::Displacement(0.36 * along + 0.64 * along)), ..Move::default() };
+        exact.apply(&step).unwrap();
+    }
+    let solution = solve(UNIT.setup(), &moves, &Options { count: None, tolerance: 1e-5 });
+    assert_eq!((solution.count, solution.steps, solution.states.len()), (0, 0, 200));
+    assert!(solution.force_error() < 1e-15 && solution.work_error < 1e-15 && solution.stress_error() < 1e-15);
+    let unit = UNIT.force_limit(1.0);
+    let last = solution.states[199];
+    assert!(distance(last.force, [0.6 * exact.force(), 0.8 * exact.force()]) < 1e-13 * unit, "{last:?}");
+    let radii = [0.0, 0.3, 0.7, 0.9, 1.1];
+    let stress = exact.shears(&radii);
+    for (shear, expected) in solution.shears(&radii).into_iter().zip(stress) {
+        assert!(distance(shear, [0.6 * expected, 0.8 * expected]) < 1e-12, "{shear:?} {expected}");
+    }
+    for (radius, expected) in radii.into_iter().zip(exact.slips(&radii)) {
+        let found = solution.slip(radius).map(|[x, y]| 0.6 * x + 0.8 * y);
+        let off = found.unwrap_or(-1.0) - expected.unwrap_or(-1.0);
+        assert!(off.abs() < 1e-12 && solution.friction_work(radius).is_nan(), "{radius}: {found:?} {expected:?}");
+    }
+}
+
+#[test]
+fn numbers_of_options_and_arcs_out_of_range_are_refused_at_their_move() {
+    for tolerance in [f64::NAN, 0.0, -1e-3, f64::INFINITY] {
+        let refused = follow(UNIT.setup(), &ellipse([0.5, 0.5], 8, 1), &Options { count: None, tolerance }, &|| true);
+        assert!(refused.is_err_and(|refusal| refusal.index.is_none()), "{tolerance}");
+    }
+    let arc = Arc { radii: [0.5, 0.5], phase: 0.0, turns: [0.0, 0.1] };
+    let bad = [
+        PlanarTarget::Arc(Arc { radii: [f64::NAN, 0.5], ..arc }),
+        PlanarTarget::Arc(Arc { radii: [0.5, f64::INFINITY], ..arc }),
+        PlanarTarget::Arc(Arc { phase: f64::NAN, ..arc }),
+        PlanarTarget::Arc(Arc { turns: [0.0, 1e300], ..arc }),
+        PlanarTarget::Displacement([f64::NAN, 0.0]),
+        PlanarTarget::Force([0.0, f64::NEG_INFINITY]),
+    ];
+    for target in bad {
+        for options in [DEFAULT, Options { count: Some(8), ..DEFAULT }] {
+            let moves = [to(PlanarTarget::Displacement([0.1, 0.0])), to(target)];
+            let refused = follow(UNIT.setup(), &moves, &options, &|| true).map(|_| ());
+            let named = refused
+                .is_err_and(|refusal| refusal.index == Some(1) && matches!(refusal.error, Error::OutOfRange { .. }));
+            assert!(named, "{target:?}");
+        }
+    }
 }

@@ -271,7 +271,7 @@ fn scenes() -> Vec<Scene> {
 
 /// xx, yy, zz, xz at (r, 0, z), and the largest error of a place over the unit pressure.
 fn compared(scene: &Scene, rule: &[(f64, f64)], r: f64, z: f64) -> ([f64; 4], f64) {
-    let ours = scene.contact.subsurface(Side::Second, NU).unwrap().at([r, 0.0, z]);
+    let ours = scene.contact.subsurface(Side::Second, NU).unwrap().at([r, 0.0, z]).unwrap();
     let ours = [ours.xx, ours.yy, ours.zz, ours.xz];
     let pairs = ours.into_iter().zip(scene.reference(rule, r, z));
     // What is not finite is wrong.

@@ -4,7 +4,8 @@
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use stickslip_mechanics::profile::{RoundedPunch, Sum};
+use stickslip_mechanics::profile::{RoundedPunch, Sum, TruncatedCone, TruncatedSphere};
+use stickslip_mechanics::protocol::{AmplitudeLaw, PathEnd, PathStart, design, lower_bound};
 use stickslip_mechanics::{Contact, Elasticity, Preload, Profile, Setup};
 
 use crate::support::config;
@@ -86,4 +87,39 @@ proptest! {
         // A thousand radii miss the maximum by 1e-5 of it.
         prop_assert!((found / expected - 1.0).abs() < 3e-5, "{found:e} Pa is not {expected:e} Pa");
     }
+}
+
+#[test]
+fn protocols_on_annuli_down_to_a_rounding_of_the_radius_are_paths_or_refusals() {
+    let shapes = [
+        Profile::TruncatedSphere(TruncatedSphere::new(0.05, 0.01).unwrap()),
+        Profile::TruncatedCone(TruncatedCone::new(0.05, 0.01).unwrap()),
+        rounded(0.01, 0.05),
+    ];
+    let mut found = 0;
+    for shape in shapes {
+        for power in [-16, -12, -9, -6, -3, -1, 2] {
+            let elasticity = Elasticity::effective(1.2e11, 1e11).unwrap();
+            let preload = Preload::NormalForce(10_f64.powi(power));
+            let setup = Setup { profile: shape.clone(), elasticity, friction: 0.5, preload };
+            let Ok(contact) = Contact::new(setup) else { continue };
+            let starts = [PathStart::Here, PathStart::Displacement(contact.gross_slip_displacement())];
+            let laws = [AmplitudeLaw::Minimax, AmplitudeLaw::EqualPeaks];
+            for reversals in [1, 3] {
+                let bound = lower_bound(&contact, reversals, &|| true).unwrap();
+                for (end, start, law) in [PathEnd::Free, PathEnd::ForceZero, PathEnd::DisplacementZero]
+                    .into_iter()
+                    .flat_map(|end| starts.map(|start| (end, start)))
+                    .flat_map(|(end, start)| laws.map(|law| (end, start, law)))
+                {
+                    let Ok(path) = design(&contact, start, law, reversals, end, &|| true) else { continue };
+                    let moved = path.displacements.iter().all(|target| target.is_finite());
+                    let of = format!("{shape:?} 1e{power} N, {end:?}, {start:?}, {law:?}, {reversals}");
+                    assert!(moved && path.largest >= 0.0 && bound >= 0.0, "{of}: {path:?}");
+                    found += 1;
+                }
+            }
+        }
+    }
+    assert!(found > 100, "{found} paths");
 }

@@ -39,7 +39,9 @@ fn section(title: &str, share: f64) -> Result<Section, Error> {
     let places: Vec<[f64; 3]> = x.iter().flat_map(|x| z.iter().map(move |z| [a * x, 0.0, a * z])).collect();
     let states = cycle.states(INSTANTS, &|| true)?;
     let fields = states.iter().map(|state| state.subsurface(Side::Second, POISSON)).collect::<Result<Vec<_>, _>>()?;
-    let path = |place: &[f64; 3]| fields.iter().map(|field| field.at(*place)).collect::<Vec<_>>();
+    let path = |place: &[f64; 3]| {
+        fields.iter().map(|field| field.at(*place).expect("a place near the contact")).collect::<Vec<_>>()
+    };
     let unit = contact.summary().unit_pressure();
     let value = |place| Criterion::Crossland { alpha: 0.3 }.of(&path(place)).value / unit;
     let values: Vec<f64> = places.iter().map(value).collect();

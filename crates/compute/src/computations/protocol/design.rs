@@ -1,5 +1,7 @@
 //! The path of a law, the stress that it leaves, and what the other laws would leave.
 
+use std::num::NonZeroUsize;
+
 use stickslip_mechanics::protocol::{
     AmplitudeLaw, Design, EvaluationRange, ExecutionErrors, Fewest, FirstMove, PathEnd, PathStart, Spread, design,
     fewest, lower_bound, trials,
@@ -54,7 +56,8 @@ impl Subject<'_> {
         stop: &dyn Stop,
     ) -> Result<(usize, Design), Failure> {
         let most = *limits::PROTOCOL_REVERSALS.end();
-        match fewest(largest, most, |reversals| self.design(kind, reversals, end, stop))? {
+        let bound = NonZeroUsize::new(most).unwrap_or(NonZeroUsize::MIN);
+        match fewest(largest, bound, |reversals| self.design(kind, reversals, end, stop))? {
             Fewest::Found(reversals, design) => Ok((reversals, design)),
             Fewest::OutOfReach(design) => {
                 let least = target * design.largest / largest;

@@ -67,7 +67,8 @@ impl Trial {
         let (mut step, merit) =
             lowest(&rows, &limits.chain((1..levels.len()).map(order)).chain(ends).collect::<Vec<Linear>>())?;
         step.pop();
-        Some((step, merit))
+        // At a stress that is infinite, or rounding, no tangent holds.
+        (merit.is_finite() && step.iter().all(|part| part.is_finite())).then_some((step, merit))
     }
 }
 

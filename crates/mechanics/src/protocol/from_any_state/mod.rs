@@ -65,8 +65,8 @@ struct LaterStrokes {
 }
 
 impl<'a> FromAnyState<'a> {
-    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few, or
-    /// where the history is too deep.
+    /// At most `strokes` strokes, the last one of which goes in the direction `last`; `None` where they are too few,
+    /// where the history is too deep, or the annulus beyond the cut-off as thin as the rounding of its radius.
     pub(super) fn new(
         contact: &'a Contact,
         strokes: usize,
@@ -87,6 +87,9 @@ impl<'a> FromAnyState<'a> {
             return None;
         }
         let cutoff = cutoff_of(outermost_singular(profile, outer.radius), outer.radius);
+        if cutoff >= outer.radius {
+            return None;
+        }
         let problem = Problem { indenter: profile, edge: outer, cutoff, reversals: inner_strokes - 1, keep_going };
         let last = if rim.is_some() { -last } else { last };
         let first = if inner_strokes.is_multiple_of(2) { -1.0 } else { 1.0 };
