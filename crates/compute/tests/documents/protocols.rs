@@ -121,18 +121,15 @@ fn an_annulus_as_thin_as_a_rounding_of_its_radius_has_a_protocol_or_is_refused()
             "profile": profile, "material": {"effective": {"e_star": 1.2e11, "g_star": 1e11}}, "friction": 0.5,
             "preload": {"normal_force": load}
         });
-        for kind in ["minimax", "equal_peaks", "linear"] {
-            for end in ["force_zero", "displacement_zero", "free"] {
-                for reversals in 1..=4_usize {
-                    let asked = json!({"contact": contact, "kind": kind, "reversals": reversals, "end": end});
-                    match post("/protocols", &asked) {
-                        Ok(reply) => {
-                            let moves = reply["path"]["displacement"].as_array().unwrap().len();
-                            assert!((1..=reversals + 2).contains(&moves), "{asked}: {moves} moves");
-                        }
-                        Err(refused) => assert_eq!(refused.status, 422, "{asked}"),
-                    }
+        // The reply compares the path with those of the other laws.
+        for end in ["force_zero", "displacement_zero", "free"] {
+            let asked = json!({"contact": contact, "kind": "minimax", "reversals": 3, "end": end});
+            match post("/protocols", &asked) {
+                Ok(reply) => {
+                    let moves = reply["path"]["displacement"].as_array().unwrap().len();
+                    assert!((1..=5).contains(&moves), "{asked}: {moves} moves");
                 }
+                Err(refused) => assert_eq!(refused.status, 422, "{asked}"),
             }
         }
     }
