@@ -1,9 +1,11 @@
 //! Working on jobs: claim a chunk, compute it, store it, again and again.
 
 use std::ops::Range;
+use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Duration;
 
+use futures::FutureExt as _;
 use uuid::Uuid;
 
 use crate::admission::{Client, Deadline, INLINE, Kind, PoolError};
@@ -34,7 +36,15 @@ impl Jobs {
         futures::future::join_all((0..CHUNKS_AT_A_TIME).map(|_| self.clone().work_on_chunks(lease))).await;
     }
 
+    /// Goes on after a panic, as where the system refuses a thread to the runtime.
     async fn work_on_chunks(self, lease: Duration) {
+        while AssertUnwindSafe(self.claim_chunks(lease)).catch_unwind().await.is_err() {
+            tracing::error!("work on jobs has panicked, and begins again");
+            tokio::time::sleep(PAUSE).await;
+        }
+    }
+
+    async fn claim_chunks(&self, lease: Duration) {
         let (mut last, mut known) = (None, None);
         let mut ending = self.common.listeners.ending();
         while !*ending.borrow() {
@@ -63,12 +73,14 @@ impl Jobs {
     async fn compute_or_release(&self, claim: Claim, known: &mut OpenJob, lease: Duration) {
         let meters = &self.common.meters;
         let running = Counted::by(&meters.running);
-        let done = self.chunk(claim, known, lease).await;
+        let done = AssertUnwindSafe(self.chunk(claim, known, lease)).catch_unwind().await;
         drop(running);
         let error = match done {
             // The job has been deleted, or the claim has ended.
-            Ok(()) | Err(JobError::NotFound(_) | JobError::Failure(_)) => return,
-            Err(error) => error,
+            Ok(Ok(()) | Err(JobError::NotFound(_))) => return,
+            Ok(Err(error)) => error,
+            // The runtime panics where the system refuses a thread, which it may give later.
+            Err(_) => JobError::Pool(PoolError::Busy),
         };
         let permanent = match &error {
             JobError::Broken(why) | JobError::Store(StoreError::Failed(why)) => Some(why.clone()),
@@ -84,7 +96,7 @@ impl Jobs {
                 self.common.store.fail_job(claim.job, why).await
             }
             None => {
-                tracing::debug!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is released");
+                tracing::warn!(job = %claim.job, chunk = claim.chunk, %error, "a chunk is released, to be tried again");
                 meters.returned.inc();
                 self.common.store.release(claim).await
             }
@@ -153,7 +165,11 @@ impl Jobs {
         let mut ending = self.common.listeners.ending();
         loop {
             tokio::select! {
-                rows = &mut rows => return Ok(Some(rows?)),
+                rows = &mut rows => return match rows {
+                    // The claim has ended, and the work with it.
+                    Err(_) if guard.is_none() => Err(JobError::NotFound(claim.job)),
+                    rows => rows.map(Some),
+                },
                 _ = ending.wait_for(|ending| *ending) => return Ok(None),
                 _ = changed.changed() => {}
                 () = tokio::time::sleep(lease / RENEWALS) => {}

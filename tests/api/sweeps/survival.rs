@@ -1,5 +1,7 @@
 //! Jobs survive the end of processes.
 
+use std::os::unix::fs::MetadataExt as _;
+use std::process::Command;
 use std::sync::OnceLock;
 
 use serde_json::Value;
@@ -108,6 +110,30 @@ async fn a_replica_that_stops_gives_its_part_back_at_once() {
     let process = Process::start(&url).await;
     assert_eq!(Server::at(&process.base).send(reqwest::Method::DELETE, &path, None, &[]).await.status(), 204);
     process.stop().await;
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_chunk_for_which_the_system_has_no_thread_is_computed_later() {
+    // No limit of processes holds for root.
+    let another = ["setpriv", "--reuid", "54321", "--regid", "54321", "--clear-groups"].map(str::to_owned);
+    let is_root = std::fs::metadata("/proc/self").unwrap().uid() == 0;
+    let prefix = if is_root { &another[..] } else { &[] };
+    let process = Process::start_by(prefix, "memory:").await;
+    let (server, id) = (Server::at(&process.base), process.id().to_string());
+    let path = server.start_job(&long(POINTS)).await;
+    let limits = std::fs::read_to_string(format!("/proc/{id}/limits")).unwrap();
+    let most =
+        limits.lines().find(|line| line.starts_with("Max processes")).unwrap().split_whitespace().nth(3).unwrap();
+    let limit = |most: &str| {
+        let most = format!("--nproc={most}:");
+        let words: Vec<_> = prefix.iter().map(String::as_str).chain(["prlimit", "--pid", &id, &most]).collect();
+        assert!(Command::new(words[0]).args(&words[1..]).status().unwrap().success());
+    };
+    limit("1");
+    let returned = async || metric(&server.base, "stickslip_job_chunks_returned_total").await;
+    until("chunks are released", async || (returned().await >= 2).then_some(())).await;
+    limit(most);
+    assert_eq!(server.job_result(&path).await, undisturbed());
 }
 
 /// Another program has locked the file, so that the clients hang up after their jobs have been sent to the store and
