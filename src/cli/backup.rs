@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::io::print;
+use super::io::{print, survive_file_size_limit};
 use super::progress;
 use crate::store;
 
@@ -21,6 +21,7 @@ pub struct Backup {
 impl Backup {
     /// Copies the store, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
+        survive_file_size_limit()?;
         let bar = progress::bar(0, "{bytes} of {total_bytes}");
         let show = |copied: u64, whole: u64| {
             bar.set_length(whole);

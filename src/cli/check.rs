@@ -15,8 +15,14 @@ pub struct Check {
     store: String,
     /// Largest relative difference of recorded states from replayed ones; zero requires equality to the last bit. Moves
     /// made by another version of the solver may differ by 1e-12.
-    #[arg(long, env = "STICKSLIP_CHECK_TOLERANCE", default_value_t = 0.0)]
+    #[arg(long, env = "STICKSLIP_CHECK_TOLERANCE", default_value_t = 0.0, value_parser = tolerance)]
     tolerance: f64,
+}
+
+/// A difference below all of a state.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let tolerance = text.parse().ok().filter(|tolerance| (0.0..1.0).contains(tolerance));
+    tolerance.ok_or_else(|| "at least 0 and below 1".to_owned())
 }
 
 impl Check {

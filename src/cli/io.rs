@@ -6,6 +6,7 @@ use std::io::{self, Read as _, Write};
 use std::path::Path;
 
 use serde_json::Value;
+use tokio::signal::unix::{SignalKind, signal};
 
 /// The content of a file, or of standard input for `-`.
 pub fn read(file: &Path) -> Result<Vec<u8>, String> {
@@ -16,6 +17,15 @@ pub fn read(file: &Path) -> Result<Vec<u8>, String> {
         File::open(file).and_then(|mut file| file.read_to_end(&mut body))
     };
     read.map(|_| body).map_err(|error| format!("cannot read {}: {error}", file.display()))
+}
+
+/// Has a write beyond the limit of the size of files (`ulimit -f`) fail, as on a full disk: without a handler, the
+/// signal that comes with it ends the process. The handler is never removed.
+pub fn survive_file_size_limit() -> Result<(), String> {
+    let kind = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    let handled = runtime.and_then(|runtime| runtime.block_on(async { signal(kind) }));
+    handled.map(drop).map_err(|error| format!("cannot listen for signals: {error}"))
 }
 
 /// A value as indented JSON.

@@ -8,7 +8,7 @@ use clap::builder::PossibleValuesParser;
 use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
 
 use super::command_error::CommandError;
-use super::io::{json, read, write};
+use super::io::{json, read, survive_file_size_limit, write};
 use super::progress;
 use stickslip_compute::formats::Format;
 use stickslip_compute::simulation::{Sweep as Plan, SweepResult};
@@ -33,6 +33,7 @@ pub struct Sweep {
 impl Sweep {
     /// Computes and prints the table, with progress on a terminal.
     pub fn run(&self) -> Result<(), String> {
+        survive_file_size_limit()?;
         self.printed().map_err(|error| error.message(self.json))
     }
 

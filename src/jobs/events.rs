@@ -35,8 +35,8 @@ impl Jobs {
     pub async fn events(&self, id: Uuid) -> Result<impl Stream<Item = StreamEvent<JobReply>> + Send + use<>, JobError> {
         let share = self.common.pool.share_of(Quota::Streams)?;
         // Before the first read, so that no change falls between it and the first wait.
-        let listener = self.common.listeners.listen(self.common.store.changes(), id);
-        let listener = listener.ok_or(JobError::TooManyStreams)?;
+        let place = self.common.listeners.place().ok_or(JobError::TooManyStreams)?;
+        let listener = self.common.listeners.listen(place, self.common.store.changes().subscribe(id));
         self.find_own(id).await?;
         let (jobs, last) = (self.clone(), None);
         let follower = Follower { jobs, id, last, listener, has_failed: false, _share: share };

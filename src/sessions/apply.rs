@@ -2,6 +2,8 @@
 
 use std::pin::pin;
 
+use jiff::Timestamp;
+
 use crate::store::{IdempotentRequest, Reply, RequestKey, Usage};
 use stickslip_compute::Stop as _;
 use stickslip_compute::computations::{OnContact as _, dry_run_relax};
@@ -14,6 +16,7 @@ use super::common::ATTEMPTS;
 use super::compute::{Computed, compute};
 use super::expected::Expected;
 use super::prelude::*;
+use super::published::UNVERIFIED;
 use super::run_to_end::run_to_end;
 use super::storage_reservation::StorageReservation;
 
@@ -46,14 +49,16 @@ impl Sessions {
         let bytes = advance.plan.length() as u64 * self.store.move_bytes();
         let mut reservation = self.reserve_storage(Usage::of(0, bytes, None)).await?;
         // A cached state may be behind the store, and its label too.
-        let mut is_current = guard.live.is_none() || expected.is_some_and(|expected| expected.label.is_some());
+        let mut is_current = guard.live.is_none()
+            || guard.version.is_some()
+            || expected.is_some_and(|expected| expected.label.is_some());
         let mut found = 0;
         for _ in 0..ATTEMPTS {
             // Again, because the same request, sent twice, may have been done here or elsewhere while this one waited.
             if let Some(reply) = request.earlier_reply().await? {
                 return Ok(reply);
             }
-            let sequence = self.load_expected(&mut guard, expected, &mut is_current).await?;
+            let past = self.load_expected(&mut guard, expected, &mut is_current).await?;
             stop.flag().charge(std::mem::take(&mut guard.loading));
             let computed = match compute(self, &mut guard, &advance, &stop).await {
                 Err(SessionError::Failure(_) | SessionError::Rejected(_))
@@ -65,7 +70,7 @@ impl Sessions {
                 computed => computed?,
             };
             let stored;
-            (guard, reservation, stored) = self.store(guard, sequence, computed, request, reservation).await?;
+            (guard, reservation, stored) = self.store(guard, past, computed, request, reservation).await?;
             match stored {
                 Ok(reply) => return Ok(reply),
                 Err(error @ (StoreError::NotFound | StoreError::Expired(_))) => {
@@ -81,17 +86,18 @@ impl Sessions {
         Err(SessionError::Overtaken { found })
     }
 
-    /// Brings the state of a session into the guard, and returns its sequence, if it is the one that the client
-    /// expects. A refusal counts only once the state has caught up with the store.
+    /// Brings the state of a session into the guard, and returns its sequence and when it last moved, if it is at the
+    /// sequence that the client expects. A refusal counts only once the state has caught up with the store.
     async fn load_expected(
         &self,
         guard: &mut Guard,
         expected: Option<Expected>,
         is_current: &mut bool,
-    ) -> Result<u64, SessionError> {
+    ) -> Result<(u64, Timestamp), SessionError> {
         let check = |live: &LoadedSession| {
             let (sequence, label) = (live.session.sequence, live.session.label.as_deref());
-            expected.map_or(Ok(()), |expected| expected.check(sequence, label)).map(|()| sequence)
+            expected.map_or(Ok(()), |expected| expected.check(sequence, label))?;
+            Ok((sequence, live.session.updated_at))
         };
         if !*is_current {
             if let Ok(sequence) = check(self.cached(guard).await?) {
@@ -102,13 +108,13 @@ impl Sessions {
         check(self.current(guard).await?)
     }
 
-    /// Stores moves after a sequence, and publishes them, even if the client hangs up meanwhile. Until the store has
-    /// answered it is unknown whether the new state is stored. What the guard holds meanwhile is the state
-    /// before, or nothing: if the store fails, the next request asks the store.
+    /// Stores moves after the past that they were computed for, and publishes them, even if the client hangs up
+    /// meanwhile. Until the store has answered it is unknown whether the new state is stored. What the guard holds
+    /// meanwhile is the state before, or nothing: if the store fails, the next request asks the store.
     async fn store(
         &self,
         guard: Guard,
-        sequence: u64,
+        past: (u64, Timestamp),
         computed: Computed,
         request: &IdempotentRequest<'_>,
         mut reservation: StorageReservation,
@@ -124,8 +130,10 @@ impl Sessions {
         let common = Arc::clone(&self.common);
         let append = async move {
             let mut guard = guard;
-            let stored = common.store.append(guard.id(), sequence, records, receipt).await.map(|()| {
+            let stored = common.store.append_after(guard.id(), past, records, receipt).await.map(|()| {
                 reservation.used(added);
+                // The change itself counts.
+                guard.version = Some(guard.version.map_or(UNVERIFIED, |version| version.saturating_add(1)));
                 publish(&common, &mut guard, live, moves);
                 reply
             });

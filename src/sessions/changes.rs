@@ -37,12 +37,13 @@ impl Sessions {
             let added = Usage::of(1, live.stored_bytes(), receipt.as_ref());
             let reservation = self.reserve_storage(added).await?;
             // A request that finds the new session in the store waits until it is cached.
-            let guard = self.cache.lock(&self.tenant, live.session.id).await;
-            let common = Arc::clone(&self.common);
+            let id = live.session.id;
+            let guard = self.entries.enter(&self.tenant, id).lock().await;
+            let (common, version) = (Arc::clone(&self.common), self.store.changes().version(id));
             let create = async move {
                 common.store.create(live.session.clone(), receipt).await?;
                 reservation.used(added);
-                guard.finish(Box::new(live));
+                guard.finish(Box::new(live), version);
                 Ok::<_, StoreError>(reply)
             };
             Ok(run_to_end(create).await?)
@@ -103,14 +104,14 @@ impl Sessions {
             let moves = copy.session.sequence * self.store.move_bytes();
             let added = Usage::of(1, copy.stored_bytes() + moves + extent.snapshot, receipt.as_ref());
             let reservation = self.reserve_storage(added).await?;
-            let new = self.cache.lock(&self.tenant, copy.session.id).await;
+            let new = self.entries.enter(&self.tenant, copy.session.id).lock().await;
             // The original may have moved on meanwhile in another process: its past stays what it was.
-            let common = Arc::clone(&self.common);
+            let (common, version) = (Arc::clone(&self.common), self.store.changes().version(copy.session.id));
             let fork = async move {
                 let _held = held;
                 common.store.fork(id, copy.session.clone(), receipt).await?;
                 reservation.used(added);
-                new.finish(copy);
+                new.finish(copy, version);
                 Ok(())
             };
             match run_to_end(fork).await {
@@ -159,7 +160,12 @@ impl Sessions {
                     renamed.inspect(|()| reservation.used(added))
                 };
                 match run_to_end(rename).await {
-                    Ok(()) => return Ok(reply),
+                    Ok(()) => {
+                        // The change itself counts.
+                        guard.version = guard.version.map(|version| version.saturating_add(1));
+                        guard.live.iter_mut().for_each(|live| live.session.label = label.clone());
+                        return Ok(reply);
+                    }
                     Err(StoreError::Stale { found }) => overtaken = found,
                     Err(error) => return Err(self.store_failure(&mut guard, error)),
                 }

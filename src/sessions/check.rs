@@ -5,6 +5,8 @@
 
 use std::fmt;
 
+use jiff::{SignedDuration, Timestamp};
+
 use crate::store::{Page, Record, Snapshot};
 use stickslip_wire::{Move, PrepareAnew, State};
 
@@ -14,6 +16,8 @@ use super::snapshot::compare;
 /// Sessions and moves that are fetched at a time.
 const SESSIONS: usize = 1_000;
 const MOVES: usize = 10_000;
+/// How far the clock may be set between two moves, or be ahead.
+const CLOCK_STEP: SignedDuration = SignedDuration::from_hours(24);
 /// Differences of one session that are reported one by one.
 const REPORTED: u64 = 5;
 
@@ -182,6 +186,7 @@ impl Check<'_> {
         snapshot: Option<Snapshot>,
     ) -> Result<(), StoreError> {
         let (mut at, mut most, mut scale, mut different) = (0, MOVES, [0.0; QUANTITIES], 0);
+        let (mut before, now) = (None, Timestamp::now());
         self.compare_snapshot(id, at, &contact, snapshot.as_ref());
         while at < last {
             let page = match self.store.history(id, at, most).await {
@@ -203,6 +208,10 @@ impl Check<'_> {
             for record in page.into_iter().take_while(|record| record.sequence <= last) {
                 at = record.sequence;
                 self.checked.moves += 1;
+                if before.is_some_and(|before| record.at + CLOCK_STEP < before) || record.at > now + CLOCK_STEP {
+                    self.found(Some(id), format!("move {at} was made at {}, more than a day off", record.at));
+                }
+                before = Some(record.at);
                 if record.measured.is_some() && record.step.displacement.map(Move::displacement) != Some(record.step) {
                     self.found(Some(id), format!("move {at} has a measured force, and goes to no displacement alone"));
                 }

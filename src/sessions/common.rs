@@ -8,9 +8,10 @@ use crate::store::{Extent, IdempotentRequest, Listeners, RequestKey, Session, Us
 use stickslip_compute::simulation::{ProfileCache, ProfileKey, Profiles};
 use stickslip_mechanics::Profile;
 
-use super::cache::Cache;
+use super::entries::Entries;
 use super::metrics::SessionMetrics;
 use super::prelude::*;
+use super::published::Published;
 use super::snapshot;
 use super::storage_reservation::{StorageReservation, UsageByTenant};
 
@@ -21,7 +22,7 @@ pub(super) const ATTEMPTS: usize = 100;
 pub struct Common {
     pub(super) store: Arc<dyn Store>,
     pub(super) pool: Pool,
-    pub(super) cache: Arc<Cache>,
+    pub(super) entries: Arc<Entries>,
     /// A permit for each snapshot that is being stored.
     pub(super) snapshots: Arc<Semaphore>,
     pub(super) listeners: Listeners,
@@ -36,7 +37,7 @@ impl Common {
         let metrics = SessionMetrics::default();
         Common {
             snapshots: Arc::new(Semaphore::new(snapshot::AT_ONCE)),
-            cache: Arc::new(Cache::new(capacity, metrics.hits.clone())),
+            entries: Arc::new(Entries::new(capacity, metrics.hits.clone())),
             store,
             pool,
             listeners: Listeners::new(STREAMS),
@@ -54,16 +55,16 @@ impl Common {
 /// The profiles that requests share are kept in the cache of the states, within one bound.
 impl ProfileCache for Common {
     fn holds(&self, key: &ProfileKey) -> bool {
-        self.cache.profile(key).is_some()
+        self.entries.profile(key).is_some()
     }
 
     fn get(&self, key: &ProfileKey) -> Option<Arc<Profile>> {
-        self.cache.profile(key).inspect(|_| self.metrics.profiles_shared.inc())
+        self.entries.profile(key).inspect(|_| self.metrics.profiles_shared.inc())
     }
 
     fn keep(&self, key: ProfileKey, profile: Arc<Profile>, bytes: usize) -> Arc<Profile> {
         self.metrics.profiles_prepared.inc();
-        self.cache.keep_profile(key, profile, bytes)
+        self.entries.keep_profile(key, profile, bytes)
     }
 }
 
@@ -85,10 +86,43 @@ impl Sessions {
 
     /// Exclusive use of a session: waits for earlier requests, as long as the pool permits.
     pub(super) async fn lock(&self, id: Uuid) -> Result<Guard, SessionError> {
-        match self.cache.try_lock(&self.tenant, id) {
-            Some(guard) => Ok(guard),
-            None => Ok(Box::pin(self.pool.wait(self.cache.lock(&self.tenant, id))).await?),
+        let mut guard = match self.entries.enter(&self.tenant, id).try_lock() {
+            Ok(guard) => guard,
+            Err(entry) => Box::pin(self.pool.wait(entry.lock())).await?,
+        };
+        guard.version = guard.published_version().filter(|version| self.is_version(id, *version));
+        Ok(guard)
+    }
+
+    /// Whether what was the stored state of a session at a version still is.
+    pub(super) fn is_version(&self, id: Uuid, version: u64) -> bool {
+        self.store.is_exclusive() && self.store.changes().version(id) == Some(version)
+    }
+
+    /// What `read` takes of the published state of a session, once that is the stored one. It waits for no change.
+    /// Where others change the store too, and while a change of this process is under way, the store is asked, which
+    /// has the state after each move.
+    pub(super) async fn shown<T>(&self, id: Uuid, read: impl Fn(&Published) -> T) -> Result<Option<T>, SessionError> {
+        let (entries, tenant) = (&self.entries, &self.tenant);
+        let shown = entries.published(tenant, id, |shown| self.is_version(id, shown.version).then(|| read(shown)));
+        if let Some(Some(shown)) = shown {
+            self.metrics.hits.inc();
+            return Ok(Some(shown));
         }
+        if shown.is_none() || (self.store.is_exclusive() && !entries.is_changing(tenant, id)) {
+            return Ok(None);
+        }
+        let stored = self.extent(id).await?;
+        let is_behind = |shown: &mut Published| shown.is_behind(&stored);
+        if entries.published(tenant, id, is_behind) == Some(true) {
+            let last =
+                self.store.history(id, stored.sequence - 1, 1).await.map_err(|error| self.store_error(id, error))?;
+            let Some(last) = last.first() else { return Ok(None) };
+            entries.published(tenant, id, |shown| shown.advance(&stored, last));
+        }
+        let shown = entries.published(tenant, id, |shown| shown.is_stored(&stored).then(|| read(shown))).flatten();
+        self.metrics.hits.inc_by(u64::from(shown.is_some()));
+        Ok(shown)
     }
 
     /// The size of a session, with its tenant and label, if it belongs to the tenant.
@@ -114,6 +148,7 @@ impl Sessions {
 
     /// Converts a failure of the store. If the session is gone, its cached state is removed too.
     pub(super) fn store_failure(&self, guard: &mut Guard, error: StoreError) -> SessionError {
+        guard.version = None;
         if matches!(error, StoreError::NotFound | StoreError::Expired(_)) {
             guard.live = None;
         }

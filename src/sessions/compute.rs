@@ -106,7 +106,7 @@ fn make(
     let Moved { stress, protocol, relaxed, accuracy, warnings, followed_in } = moved;
     live.replay_cost.add(records.len(), followed_in);
     live.session.sequence = sequence;
-    live.session.updated_at = now;
+    live.session.updated_at = records.last().map_or(live.session.updated_at, |last| last.at);
     let id = live.session.id;
     drop(solving);
     let state: State = live.contact.state().into();

@@ -70,15 +70,32 @@ impl Sessions {
         let Some(after) = page.items.first().map(|item| item.sequence - 1) else { return Ok(()) };
         let (stop, _guard) = self.pool.deadline();
         let (virgin, known) = self.copies(id, &stop, |live| (live.contact.virgin(), live.log_for(after))).await?;
+        let log = self.mark(id, page, virgin, known, &stop, memory).await?;
+        self.keep_log(id, &log).await
+    }
+
+    /// The same where the contact before its first move is known, and perhaps some of the cycles; returns those up to
+    /// the end of the page.
+    pub(super) async fn mark(
+        &self,
+        id: Uuid,
+        page: &mut HistoryPage,
+        virgin: Contact,
+        known: Option<Arc<CycleLog>>,
+        stop: &Deadline,
+        memory: &mut Reservation,
+    ) -> Result<Arc<CycleLog>, SessionError> {
+        let after = page.items.first().map_or(0, |item| item.sequence - 1);
         let mut log = match known {
             Some(known) if known.sequence >= after => known,
-            known => self.look_on(id, after, known, &virgin, (&stop, MARKED), memory).await?,
+            known => self.look_on(id, after, known, &virgin, (stop, MARKED), memory).await?,
         };
         let (pool, before) = (&self.pool, memory.bytes());
         pool.resize(memory, before + bytes_with(&log, PAGE)).await?;
         mark_centres(page, &virgin);
         let states: Vec<(u64, State)> = page.items.iter().map(|item| (item.sequence, item.state)).collect();
         let cost = Work { moves: CYCLE_MOVES * states.len(), ..Work::default() }.cost(virgin.profile());
+        let stop = stop.clone();
         let look = move || {
             let mut answer = |(sequence, state): (u64, State)| {
                 let is_known = sequence <= log.sequence;
@@ -95,7 +112,7 @@ impl Sessions {
         let (log, cycles) = pool.run(cost, look).await??;
         pool.resize(memory, before).await?;
         page.items.iter_mut().zip(cycles).for_each(|(item, cycle)| item.cycle = cycle);
-        self.keep_log(id, &log).await
+        Ok(log)
     }
 
     /// Looks at the states up to the move `sequence` that are not in `known`. The log at the deadline is kept
@@ -159,7 +176,7 @@ impl Sessions {
     }
 
     /// Keeps a log with the cached session, unless the log is ahead of the session.
-    async fn keep_log(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
+    pub(super) async fn keep_log(&self, id: Uuid, log: &Arc<CycleLog>) -> Result<(), SessionError> {
         let mut guard = self.lock(id).await?;
         if let Some(live) = guard.live.as_mut().filter(|live| live.session.sequence >= log.sequence) {
             live.keep_log(log);

@@ -11,6 +11,7 @@ use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
 
 use super::prelude::*;
+use super::published::Published;
 
 /// The sessions of a tenant. Clones, and those of other tenants, are handles on the same.
 #[derive(Clone)]
@@ -62,7 +63,7 @@ impl Sessions {
 
     /// Bytes of the cached states, and how many sessions they are.
     pub fn held(&self) -> (usize, usize) {
-        self.cache.held()
+        self.entries.held()
     }
 
     /// A session with its state.
@@ -70,6 +71,9 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn get(&self, id: Uuid) -> Result<SessionReply, SessionError> {
+        if let Some(shown) = self.shown(id, Published::reply).await? {
+            return Ok(shown);
+        }
         let mut guard = self.lock(id).await?;
         Ok(self.current(&mut guard).await?.reply())
     }
@@ -79,13 +83,10 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store or of the pool.
     pub async fn definition(&self, id: Uuid) -> Result<(Vec<u8>, Reservation), SessionError> {
-        let definition = {
-            let mut guard = self.lock(id).await?;
-            // It does not depend on the state, which is not loaded for it.
-            match &guard.live {
-                Some(live) if !live.is_behind => Arc::clone(&self.current(&mut guard).await?.session.definition),
-                _ => self.find_own(id).await?.definition,
-            }
+        // It does not depend on the state, which is not loaded for it.
+        let definition = match self.shown(id, |shown| Arc::clone(&shown.session.definition)).await? {
+            Some(shown) => shown,
+            None => self.find_own(id).await?.definition,
         };
         let points = definition.profile.points();
         let held = self.pool.reserve(bytes::of_definition(points)).await?;
@@ -146,12 +147,17 @@ impl Sessions {
 
     /// How many bytes of states may be cached.
     pub fn capacity(&self) -> usize {
-        self.cache.capacity()
+        self.entries.capacity()
     }
 
     /// How many clients listen to events.
     pub fn streams(&self) -> usize {
         self.listeners.count()
+    }
+
+    /// Bytes of the log of the store, if it has one.
+    pub fn log_bytes(&self) -> Option<u64> {
+        self.store.log_bytes()
     }
 
     /// What the store has committed.

@@ -13,7 +13,10 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn sequence(&self, id: Uuid) -> Result<u64, SessionError> {
-        Ok(self.extent(id).await?.sequence)
+        match self.shown(id, |shown| shown.session.sequence).await? {
+            Some(shown) => Ok(shown),
+            None => Ok(self.extent(id).await?.sequence),
+        }
     }
 
     /// Checks that the first `end` moves of a session are all stored.
@@ -39,7 +42,7 @@ impl Sessions {
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<HistoryPage, SessionError> {
-        if !self.cache.holds(&self.tenant, id) {
+        if self.entries.published(&self.tenant, id, |_| ()).is_none() {
             self.extent(id).await?;
         }
         self.own_history(id, after, limit).await

@@ -11,11 +11,12 @@ use stickslip_wire::limits::Limited as _;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
 use super::prelude::*;
+use super::published::presented;
 use super::snapshot::ReplayCost;
 
-/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and the entry in the cache. The
-/// process grows by 800.
-const FIXED: usize = 1024;
+/// Bytes of a session besides its pieces, its label and its tables: what is fixed, and its entry with what readers are
+/// shown, some 450 of them.
+const FIXED: usize = 1536;
 
 /// Bytes that suffice for most replies, so that a buffer need not grow step by step.
 const REPLY: usize = 768;
@@ -43,6 +44,8 @@ pub(super) struct LoadedSession {
     pub(super) past_cycles: Option<Arc<CycleLog>>,
     /// The friction by its observations, once it has been estimated.
     pub(super) estimated: Option<Estimated>,
+    /// Bytes that count for it in the cache: its own, and those of its profile unless others share that.
+    pub(super) counted: (usize, usize),
 }
 
 /// What a cycle says about the friction.
@@ -83,6 +86,7 @@ impl LoadedSession {
             cycles,
             past_cycles,
             estimated,
+            counted: (0, 0),
         })
     }
 
@@ -116,16 +120,7 @@ impl LoadedSession {
 
     /// The reply that presents a session.
     pub(super) fn reply(&self) -> SessionReply {
-        let Session { id, ref label, sequence, created_at, updated_at, .. } = self.session;
-        SessionReply {
-            id,
-            label: label.clone(),
-            sequence,
-            contact: self.derived.summary.clone(),
-            state: self.contact.state().into(),
-            created_at,
-            updated_at,
-        }
+        presented(&self.session, &self.derived.summary, self.contact.state().into())
     }
 
     /// The reply that presents a session just made.

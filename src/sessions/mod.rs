@@ -15,35 +15,38 @@
 //! locks have other keys, and the tenant of what comes from the store is checked before it is used.
 
 mod apply;
-mod cache;
 mod changes;
 mod check;
 mod common;
 mod compute;
 mod cycles;
+mod entries;
 mod error;
 mod events;
 mod expected;
 mod expiry;
+mod feed;
 mod handle;
 mod history;
 mod loaded;
 mod metrics;
 mod observations;
 mod prelude;
+mod published;
 mod replay;
 mod run_to_end;
 mod snapshot;
 mod storage_reservation;
 mod trace;
 
-pub use cache::CAPACITY;
 pub use check::{CheckEvent, Checked, Finding, check, count_moves};
 pub use compute::bytes_of_moves;
+pub use entries::CAPACITY;
 pub use error::SessionError;
 pub use events::events;
 pub use expected::{Expected, label_checksum};
 pub use expiry::run_expiry_loop;
+pub use feed::ContactEvent;
 pub use handle::Sessions;
 pub use metrics::SessionMetrics;
 pub use trace::{bytes_of_trace, trace};

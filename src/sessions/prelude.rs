@@ -6,8 +6,8 @@ pub use std::time::Duration;
 pub use stickslip_mechanics::Contact;
 pub use uuid::Uuid;
 
-pub(super) use super::cache::Guard;
 pub(super) use super::common::Common;
+pub(super) use super::entries::Guard;
 pub use super::error::SessionError;
 pub(super) use super::handle::Sessions;
 pub(super) use super::loaded::{LoadedSession, written};

@@ -8,6 +8,7 @@ use stickslip_compute::{Interrupted, Stop as _};
 use stickslip_wire::{ContactDefinition, limits};
 
 use super::prelude::*;
+use super::published::UNVERIFIED;
 
 /// Moves that are fetched from the store at a time.
 pub(super) const PAGE: usize = 10_000;
@@ -42,19 +43,23 @@ impl Sessions {
 
     /// The stored session, with the changes that other processes have made up to now.
     pub(super) async fn current<'a>(&self, guard: &'a mut Guard) -> Result<&'a mut LoadedSession, SessionError> {
-        if let Some(cached) = guard.live.as_ref().map(|live| live.session.sequence) {
+        let is_current = guard.version.is_some_and(|version| self.is_version(guard.id(), version));
+        if let Some(live) = guard.live.as_ref().filter(|_| !is_current) {
+            let (cached, moved_at) = (live.session.sequence, live.session.updated_at);
+            let version = self.store.changes().version(guard.id()).unwrap_or(UNVERIFIED);
             let stored = self.store.extent(guard.id()).await;
             let stored = stored.map_err(|error| self.store_failure(guard, error))?;
             if let Some(live) = &mut guard.live {
-                live.session.label = stored.label;
+                live.session.label.clone_from(&stored.label);
             }
             if stored.sequence > cached {
                 // No further: the label belongs to this sequence.
                 Box::pin(self.catch_up(guard, stored.sequence)).await?;
-            } else if stored.sequence < cached {
+            } else if stored.sequence < cached || !stored.is_moved_at(moved_at) {
                 // The store has been restored from a backup.
                 guard.live = None;
             }
+            guard.version = guard.live.as_ref().map(|_| version);
         }
         self.cached(guard).await
     }
@@ -96,6 +101,7 @@ impl Sessions {
             return self.catch_up(guard, u64::MAX).await.map(drop);
         }
         let (id, begin) = (guard.id(), Instant::now());
+        let version = self.store.changes().version(id).unwrap_or(UNVERIFIED);
         let (extent, whole) = self.own(id, self.store.load(id, is_small).await, |(extent, _)| &extent.tenant)?;
         // A request that has some of this memory never waits for more of it.
         guard.held = Reservation::default();
@@ -125,6 +131,7 @@ impl Sessions {
         guard.held.shrink(2 * live.bytes() + live.shape_bytes());
         guard.live = Some(live);
         followed?;
+        guard.version = Some(version);
         self.metrics.open.observe(begin.elapsed().as_secs_f64());
         Ok(())
     }

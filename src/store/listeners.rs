@@ -3,12 +3,8 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
-use uuid::Uuid;
-
 use stickslip_wire::EndReason;
-
-use super::Changes;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, watch};
 
 /// How long a listener waits at most before it reads again.
 const PAUSE: Duration = Duration::from_secs(1);
@@ -29,9 +25,9 @@ pub struct Listeners {
     ending: watch::Sender<bool>,
 }
 
-/// A listener to the changes of one contact or job.
-pub struct Listener {
-    changed: watch::Receiver<()>,
+/// A listener to what is watched of one contact or job.
+pub struct Listener<T = ()> {
+    changed: watch::Receiver<T>,
     ending: watch::Receiver<bool>,
     // Frees the place when the listener is dropped.
     _place: OwnedSemaphorePermit,
@@ -48,11 +44,15 @@ impl Listeners {
         self.limit - self.places.available_permits()
     }
 
-    /// Listens from now on; none if there are as many listeners as there may be.
+    /// A place for another listener; none if there are as many as there may be.
     #[must_use]
-    pub fn listen(&self, changes: &Changes, id: Uuid) -> Option<Listener> {
-        let place = Arc::clone(&self.places).try_acquire_owned().ok()?;
-        Some(Listener { changed: changes.subscribe(id), ending: self.ending(), _place: place })
+    pub fn place(&self) -> Option<OwnedSemaphorePermit> {
+        Arc::clone(&self.places).try_acquire_owned().ok()
+    }
+
+    /// Listens in a place.
+    pub fn listen<T>(&self, place: OwnedSemaphorePermit, changed: watch::Receiver<T>) -> Listener<T> {
+        Listener { changed, ending: self.ending(), _place: place }
     }
 
     /// Becomes true when the process is about to stop.
@@ -66,7 +66,12 @@ impl Listeners {
     }
 }
 
-impl Listener {
+impl<T> Listener<T> {
+    /// What is watched now. Later changes wake the listener.
+    pub fn newest(&mut self) -> watch::Ref<'_, T> {
+        self.changed.borrow_and_update()
+    }
+
     /// Whether the process is about to stop.
     pub fn is_ending(&self) -> bool {
         *self.ending.borrow()

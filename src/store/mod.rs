@@ -6,6 +6,7 @@
 
 mod batch;
 pub mod changes;
+mod clock;
 pub mod commits;
 pub mod idempotency;
 pub mod job_store;
@@ -27,6 +28,7 @@ use uuid::Uuid;
 use stickslip_wire::{ContactDefinition, ContactOrder, Move, ObservedForce, SessionSummary, State};
 
 pub use changes::Changes;
+pub use clock::Clock;
 pub use commits::Commits;
 pub use idempotency::IdempotentRequest;
 pub use job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
@@ -176,6 +178,15 @@ pub struct Extent {
     pub definition: u64,
     /// Bytes of its snapshot, if there is one.
     pub snapshot: u64,
+    /// When it last moved, where others may change the store: of two pasts of one length it tells which is stored.
+    pub moved_at: Option<Timestamp>,
+}
+
+impl Extent {
+    /// Whether this may be the extent of a session that last moved at this time.
+    pub fn is_moved_at(&self, at: Timestamp) -> bool {
+        self.moved_at.is_none_or(|stored| stored == at)
+    }
 }
 
 /// A label, or none, and the one that takes its place.
@@ -339,6 +350,18 @@ pub trait Store: JobStore {
     /// records are numbered from `expected + 1`.
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()>;
 
+    /// The same for a session that last moved at this time, if others may change the store: they may have put back an
+    /// earlier past, and moved the session on from there. [`StoreError::Stale`] if it last moved at another time.
+    async fn append_after(
+        &self,
+        id: Uuid,
+        (expected, _): (u64, Timestamp),
+        records: Vec<Record>,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
+        self.append(id, expected, records, receipt).await
+    }
+
     /// At most `limit` moves of a session with sequences greater than `after`, in order and without a gap.
     ///
     /// # Errors
@@ -368,16 +391,31 @@ pub trait Store: JobStore {
     /// if the session is deleted or a newer snapshot is stored.
     async fn save_snapshot(&self, id: Uuid, snapshot: Snapshot, unreadable: Option<u64>) -> Result<()>;
 
+    /// The time now, by the clock that says how old what is stored is.
+    async fn now(&self) -> Result<Timestamp> {
+        Ok(Timestamp::now())
+    }
+
     /// Deletes receipts older than [`RECEIPT_LIFETIME`], jobs past their time, and, where `idle_since` is given, the
     /// sessions that have not moved since. Those are [`StoreError::Expired`] for [`EXPIRED_LIFETIME`] from then on.
     /// Returns how many sessions expired.
     async fn purge_expired(&self, idle_since: Option<Timestamp>) -> Result<u64>;
+
+    /// Whether this process alone changes what is stored, and counts the changes in [`Store::changes`].
+    fn is_exclusive(&self) -> bool {
+        false
+    }
 
     /// Wakes those who wait for changes, whichever process on the same storage makes them.
     fn changes(&self) -> &Changes;
 
     /// Metrics of its transactions.
     fn commits(&self) -> &Commits;
+
+    /// Bytes of the log whose changes are not in the file of the store yet, if it has one.
+    fn log_bytes(&self) -> Option<u64> {
+        None
+    }
 
     /// Faults of the storage itself, a line each: damage, and rows that belong to no contact.
     async fn check_integrity(&self) -> Result<Vec<String>>;

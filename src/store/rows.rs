@@ -66,6 +66,7 @@ pub(super) fn extent<R: RowReader>(row: &mut R) -> Result<Extent, R::Error> {
         label: row.next()?,
         definition: row.count()?,
         snapshot: row.count()?,
+        moved_at: None,
     })
 }
 

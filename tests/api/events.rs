@@ -13,7 +13,7 @@ use reqwest::Method;
 use serde_json::{Value, json};
 use stickslip::admission::{Pool, STREAMS};
 use stickslip::sessions::{CAPACITY, Sessions, events};
-use stickslip::store::SqliteStore;
+use stickslip::store::{SqliteStore, StreamEvent};
 use stickslip_wire::client::{Client, Error, Event, Options};
 use stickslip_wire::{EndReason, Move, Path, PathRequest, StateEvent, Steps};
 use uuid::Uuid;
@@ -93,6 +93,36 @@ async fn everybody_sees_the_same_moves_in_order_after_the_present_state() {
     for events in [&mut early, &mut other, &mut late] {
         assert_eq!(next_state(events).await.sequence, 41);
     }
+}
+
+#[tokio::test]
+async fn a_move_is_read_and_written_once_however_many_follow() {
+    let pool = Pool::with_defaults();
+    let sessions = Sessions::new(Arc::new(SqliteStore::in_memory().unwrap()), pool.clone(), CAPACITY);
+    let client = Server::over(sessions.clone(), pool).await.client.clone();
+    let id = client.create(&create(), &Options::default()).await.unwrap().id;
+    let mut followers = Vec::new();
+    for _ in 0..100 {
+        let mut follower = Box::pin(events(&sessions, id, None).await.unwrap());
+        follower.next().await.unwrap();
+        followers.push(follower);
+    }
+    let mut asked = 0;
+    for sequence in 1..=6 {
+        client.apply(id, &Move::displacement(1e-9 * sequence as f64).into(), &Options::default()).await.unwrap();
+        let events = join_all(followers.iter_mut().map(|follower| follower.next())).await;
+        let events: Vec<_> = events
+            .into_iter()
+            .map(|event| match event.unwrap() {
+                StreamEvent::State(event) => event,
+                StreamEvent::End(reason) => panic!("{reason:?}"),
+            })
+            .collect();
+        assert!(events.iter().all(|event| event.sequence == sequence && Arc::ptr_eq(event, &events[0])));
+        asked = if sequence == 1 { sessions.metrics.hits.get() } else { asked };
+    }
+    // The first event has looked at the contact for all that follow.
+    assert_eq!(sessions.metrics.hits.get() - asked, 5);
 }
 
 #[tokio::test]

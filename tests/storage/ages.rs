@@ -1,11 +1,15 @@
 //! What is kept for a time and is gone after it, in a file and in a database.
 
+use std::time::Duration;
+
 use futures::future::join_all;
-use jiff::Timestamp;
+use jiff::{SignedDuration, Timestamp};
+use stickslip::sessions;
 use stickslip::store::{ChunkResult, Job, Session, StoreError};
 use uuid::Uuid;
 
 use crate::common::place::Place;
+use crate::common::postgres::Cluster;
 use crate::common::process::Process;
 use crate::common::until;
 use crate::fixtures::{JOB_LIMITS, LEASE, job, receipt, records, session};
@@ -34,6 +38,47 @@ async fn a_key_may_be_used_again_after_a_day() {
         assert_eq!(place.number("SELECT count(*) FROM receipts WHERE key <> ''").await, 1);
         assert!(store.receipt("young").await.unwrap().is_some());
     }
+}
+
+/// The clock is ahead at the start, if it was right at the last write.
+#[tokio::test]
+async fn a_clock_that_is_ahead_deletes_nothing() {
+    let (place, then) = (Place::file(), Timestamp::now() - SignedDuration::from_hours(24 * 365));
+    let old = Session { created_at: then, updated_at: then, ..session(None) };
+    let store = place.open().await;
+    store.create(old.clone(), Some(receipt("key", None, 1))).await.unwrap();
+    let job = Job { created_at: then, ..job("") };
+    store.create_job(job.clone(), "{}".to_owned(), JOB_LIMITS, None).await.unwrap();
+    drop(store);
+    place.age("receipts", "at", 24 * 365, "key = 'key'").await;
+    let file = std::fs::File::options().write(true).open(place.path().unwrap()).unwrap();
+    file.set_modified(then.into()).unwrap();
+    let store = place.open().await;
+    let purged = tokio::spawn(sessions::run_expiry_loop(store.clone(), Some(Duration::from_secs(1))));
+    for _ in 0..5 {
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        store.find(old.id).await.unwrap();
+    }
+    purged.abort();
+    store.purge_expired(None).await.unwrap();
+    store.job(job.id).await.unwrap();
+    assert!(store.receipt("key").await.unwrap().is_some());
+    assert!(matches!(store.keep(receipt("key", None, 0)).await, Err(StoreError::KeyTaken)));
+}
+
+/// The clock of this process, by which contacts are made, is ahead of that of the database.
+#[tokio::test]
+async fn the_time_is_that_of_the_database_and_nothing_expires_at_the_start() {
+    let place = Place::Database(Cluster::shared().database().await);
+    let (store, idle) = (place.open().await, session(None));
+    let here = store.now().await.unwrap().duration_since(Timestamp::now());
+    assert!(here.abs() < SignedDuration::from_mins(5), "{here}");
+    let old = idle.updated_at - SignedDuration::from_hours(9);
+    store.create(Session { updated_at: old, ..idle.clone() }, None).await.unwrap();
+    let purges = tokio::spawn(sessions::run_expiry_loop(store.clone(), Some(Duration::from_secs(60 * 60))));
+    tokio::time::sleep(Duration::from_millis(500)).await;
+    store.find(idle.id).await.unwrap();
+    purges.abort();
 }
 
 #[tokio::test]
@@ -78,7 +123,8 @@ async fn a_server_removes_results_after_a_day_and_jobs_that_do_not_end_after_a_w
             kept.extend(is_kept.then_some(job.id));
         }
         drop(store);
-        let server = Process::start(&place.url()).await;
+        // Nothing is deleted in the first period, which is short then.
+        let server = Process::with(&place.url(), &["--expire-after", "1s"]);
         let left = async || server.client.jobs(None).await.unwrap().items.iter().map(|job| job.id).collect::<Vec<_>>();
         until("the others are gone", async || (left().await == kept).then_some(())).await;
         let results = "SELECT count(*) FROM job_chunks WHERE content = ";

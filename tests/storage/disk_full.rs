@@ -137,6 +137,27 @@ async fn a_disk_that_is_full_at_start_is_read() {
     }
 }
 
+/// A mark that does not fit on the disk leaves the log, without which the file would be refused.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_stop_on_a_full_disk_leaves_a_store_that_starts_again() {
+    for room in [0, 4 << 10, 8 << 10, 16 << 10, 64 << 10] {
+        let disk = SmallDisk::new(SIZE);
+        let store = format!("sqlite:{}", disk.folder.path().join("full.db").display());
+        let process = Process::start_by(&disk.entrance(), &store).await;
+        let id = process.client.create(&create(), &Options::default()).await.unwrap().id;
+        disk.fill(room);
+        let mut acknowledged = 0;
+        while let Ok(reply) = apply(&process.client, id, Move::force(0.1), acknowledged).await {
+            acknowledged = reply.sequence;
+        }
+        process.stop().await;
+        disk.clear();
+        let process = Process::start_by(&disk.entrance(), &store).await;
+        assert_eq!(process.client.contact(id).await.unwrap().sequence, acknowledged, "{room}");
+        process.stop().await;
+    }
+}
+
 #[tokio::test(flavor = "multi_thread")]
 async fn a_limit_of_the_size_of_files_is_like_a_full_disk() {
     let folder = tempdir().unwrap();

@@ -4,7 +4,7 @@ use crate::common;
 use crate::fixtures::url;
 
 use std::fs;
-use std::os::unix::fs::PermissionsExt as _;
+use std::os::unix::fs::{FileExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
 use common::kill::{exact, history};
@@ -82,6 +82,88 @@ async fn a_file_that_is_replaced_or_removed_takes_no_more_changes() {
     process.stop().await;
     assert_eq!(fs::read_to_string(beside(&path, "-wal")).unwrap(), "the log of another");
     assert!(fs::read(&path).unwrap() == fs::read(&other).unwrap());
+}
+
+/// The same file, with other bytes: what is acknowledged after that would be lost.
+#[tokio::test]
+async fn a_file_that_is_overwritten_in_place_takes_no_more_changes() {
+    let folder = tempdir().unwrap();
+    let (path, copy) = (folder.path().join("mine.db"), folder.path().join("copy.db"));
+    for how in 0..4 {
+        let process = Process::start(&url(&path)).await;
+        let server = Server::at(&process.base);
+        let id = server.contact().await;
+        let force = async |force: f64| server.post(&format!("/contacts/{id}/move"), &json!({"force": force})).await;
+        assert_eq!(force(0.1).await.status(), 200);
+        assert!(run(&["backup", copy.to_str().unwrap(), "--store", &url(&path)]).status.success());
+        assert_eq!(force(0.2).await.status(), 200);
+        let (mut whole, length) = (fs::read(&path).unwrap(), fs::metadata(&path).unwrap().len());
+        let file = fs::File::options().write(true).open(&path).unwrap();
+        match how {
+            0 => drop(fs::copy(&copy, &path).unwrap()),
+            1 => file.set_len(length / 2).unwrap(),
+            2 => fs::write(&path, vec![0; whole.len()]).unwrap(),
+            _ => {
+                // An older state of the same file.
+                whole[27] = whole[27].wrapping_sub(1);
+                file.write_all_at(&whole[..100], 0).unwrap();
+            }
+        }
+        is_unavailable(&server, &id).await;
+        let log = fs::read(beside(&path, "-wal")).unwrap();
+        process.stop().await;
+        assert!(fs::read(beside(&path, "-wal")).unwrap() == log, "the log of another file is cut");
+        for file in [&path, &copy, &beside(&path, "-wal"), &beside(&path, "-shm")] {
+            fs::remove_file(file).unwrap();
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_store_that_is_made_is_a_warning() {
+    let folder = tempdir().unwrap();
+    let file = url(&folder.path().join("new.db"));
+    for is_new in [true, false] {
+        let log = Process::with(&file, &["--log", "warn"]).stop().await;
+        assert_eq!(log.contains("an empty one has been made"), is_new, "{log}");
+    }
+}
+
+/// SQLite reads a log up to its first damaged frame: the moves after it would be gone without a word.
+#[tokio::test]
+async fn acknowledged_commits_behind_damage_in_the_log_are_noticed() {
+    let folder = tempdir().unwrap();
+    let (path, copy) = (folder.path().join("flipped.db"), folder.path().join("copy.db"));
+    let (file, log) = (url(&path), beside(&path, "-wal"));
+    let process = Process::start(&file).await;
+    let id = process.client.create(&create(), &Options::default()).await.unwrap().id;
+    for index in 0..20 {
+        let step = stickslip_wire::Move::displacement(f64::from(index) * 1e-9);
+        process.client.apply(id, &step.into(), &Options::default()).await.unwrap();
+    }
+    process.kill().await;
+    let whole = fs::read(&log).unwrap();
+    let frames = (whole.len() - 32) / 4120;
+    // In the header, in a frame and in its header, and in the last frame, which a crash may have torn.
+    for (at, is_lost) in
+        [(12, true), (32 + 4120 * 3 + 900, true), (32 + 4120 * 4 + 9, true), (32 + 4120 * frames - 9, false)]
+    {
+        let mut flipped = whole.clone();
+        flipped[at] ^= 4;
+        fs::write(&log, &flipped).unwrap();
+        let said = run(&["check", "--store", &file]);
+        assert_eq!(String::from_utf8_lossy(&said.stderr).contains("acknowledged commits"), is_lost, "{at}: {said:?}");
+        if is_lost {
+            let said = [refused(&file).stderr, run(&["backup", copy.to_str().unwrap(), "--store", &file]).stderr];
+            for said in said.map(|said| String::from_utf8(said).unwrap()) {
+                assert!(said.contains("flipped.db-wal is damaged at byte"), "{said}");
+            }
+            assert!(fs::read(&log).unwrap() == flipped && !copy.exists());
+        }
+    }
+    fs::write(&log, &whole).unwrap();
+    let process = Process::start(&file).await;
+    assert_eq!(process.client.contact(id).await.unwrap().sequence, 20);
 }
 
 #[tokio::test]

@@ -187,3 +187,72 @@ async fn moves_made_at_one_replica_are_sent_by_the_other_also_after_the_database
     let past: Vec<_> = past.into_iter().map(|item| (item.sequence, Some(item.step), item.state)).collect();
     assert_eq!(seen_events, past);
 }
+
+/// A dump is put back under a replica that runs, which has a later state; another one moves the contact on from there.
+#[tokio::test]
+async fn a_past_that_was_put_back_is_not_gone_on_with_by_the_sequence_alone() {
+    let url = Cluster::shared().database().await;
+    let open = async || {
+        let store = Arc::new(PostgresStore::open(&url).await.unwrap());
+        (store.clone(), Server::with(store, CAPACITY).await.client.clone())
+    };
+    let ((_, here), (store, there), options) = (open().await, open().await, Options::default());
+    let id = here.create(&create(), &options).await.unwrap().id;
+    let to = async |client: &stickslip_wire::client::Client, displacement: f64| {
+        client.apply(id, &Move::displacement(displacement).into(), &options).await.unwrap()
+    };
+    let dumped = to(&here, 1e-8).await;
+    for displacement in [5e-7, -5e-7] {
+        to(&here, displacement).await;
+    }
+    let database = connected(&url).await;
+    let restore = "DELETE FROM moves WHERE sequence > 1;
+        UPDATE contacts SET sequence = 1, updated_at = m.at, updated_ns = m.at_ns FROM moves AS m";
+    database.batch_execute(restore).await.unwrap();
+    assert_eq!(there.contact(id).await.unwrap().state, dumped.state);
+    for displacement in [2e-8, 3e-8] {
+        to(&there, displacement).await;
+    }
+    assert_eq!(here.contact(id).await.unwrap().state, there.contact(id).await.unwrap().state);
+    // The first one has what was before the dump, and the sequence after it.
+    database.batch_execute(restore).await.unwrap();
+    for displacement in [4e-7, 6e-8] {
+        to(&there, displacement).await;
+    }
+    let last = to(&here, 7e-8).await;
+    assert_eq!((last.sequence, there.contact(id).await.unwrap().state), (4, last.state));
+    let checked = stickslip::sessions::check(&*store, 0.0, &mut |_| ()).await.unwrap();
+    assert_eq!((checked.findings, checked.moves), (0, 4));
+}
+
+/// What the operator of the database has to mend is no fault of the server, and it is not ready meanwhile.
+#[tokio::test]
+async fn a_lost_table_or_right_is_an_outage_of_the_storage() {
+    let url = Cluster::shared().database().await;
+    let server = Server::with(Arc::new(PostgresStore::open(&url).await.unwrap()), CAPACITY).await;
+    let (id, database) = (server.contact().await, connected(&url).await);
+    for (lost, back) in [
+        ("ALTER TABLE moves RENAME TO gone", "ALTER TABLE gone RENAME TO moves"),
+        ("ALTER TABLE receipts RENAME TO gone", "ALTER TABLE gone RENAME TO receipts"),
+    ] {
+        database.batch_execute(lost).await.unwrap();
+        let refused = server.post(&format!("/contacts/{id}/move"), &json!({"force": 0.1})).await;
+        assert!(refused.headers().contains_key("retry-after"));
+        assert_eq!(common::problem(refused).await.code, "storage_unavailable");
+        until("it is not ready", async || (server.get("/readyz").await.status() == 503).then_some(())).await;
+        database.batch_execute(back).await.unwrap();
+        until("it is ready", async || (server.get("/readyz").await.status() == 200).then_some(())).await;
+        assert_eq!(server.post(&format!("/contacts/{id}/move"), &json!({"force": 0.1})).await.status(), 200);
+    }
+}
+
+#[tokio::test]
+async fn a_database_without_all_letters_is_refused_at_the_start() {
+    let url = Cluster::shared().database().await;
+    let (server, name) = url.rsplit_once('/').unwrap();
+    let latin = format!("{}_latin", name.split('?').next().unwrap());
+    let make = format!("CREATE DATABASE {latin} ENCODING 'LATIN1' LC_COLLATE 'C' LC_CTYPE 'C' TEMPLATE template0");
+    connected(&url).await.batch_execute(&make).await.unwrap();
+    let refused = PostgresStore::open(&format!("{server}/{latin}")).await.err().unwrap().to_string();
+    assert!(refused.contains("LATIN1"), "{refused}");
+}

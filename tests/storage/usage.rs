@@ -3,6 +3,7 @@
 use stickslip::store::{Store, Tenant};
 
 use crate::common::place::Place;
+use crate::common::postgres::{Cluster, connected};
 use crate::fixtures::{records, session};
 
 const MOVES: u64 = 20_000;
@@ -33,4 +34,18 @@ async fn what_is_counted_is_what_a_file_or_a_database_takes() {
         println!("{} bytes a move, counted as {}", taken / MOVES, counted / MOVES);
         assert!(taken <= counted && counted <= 2 * taken, "{taken} bytes are taken, and {counted} counted");
     }
+}
+
+/// Ten million replies would be beyond the time limit of a statement.
+#[tokio::test]
+async fn the_space_of_kept_replies_is_read_from_an_index_of_the_database() {
+    let url = Cluster::shared().database().await;
+    drop(stickslip::store::open(&url).await.unwrap());
+    let database = connected(&url).await;
+    for statement in ["VACUUM receipts", "SET enable_seqscan = off", "SET enable_bitmapscan = off"] {
+        database.batch_execute(statement).await.unwrap();
+    }
+    let sum = "EXPLAIN SELECT coalesce(sum(256 + bytes), 0) FROM receipts WHERE tenant = 'lab'";
+    let plan = database.query(sum, &[]).await.unwrap().iter().map(|row| row.get::<_, String>(0)).collect::<String>();
+    assert!(plan.contains("Index Only Scan using receipts_by_tenant"), "{plan}");
 }

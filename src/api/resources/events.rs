@@ -44,7 +44,9 @@ pub async fn watch_contact(
         events => events?,
     };
     let events = events.map(|happening| match happening {
-        StreamEvent::State(state) => Event::default().id(state.sequence.to_string()).event("state").json_data(state),
+        StreamEvent::State(state) => {
+            Ok(Event::default().id(state.sequence.to_string()).event("state").data(&state.json))
+        }
         // Without an identifier, so that a client that reconnects continues where it was.
         StreamEvent::End(reason) => Event::default().event("end").json_data(EndEvent { reason }),
     });

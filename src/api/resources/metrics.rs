@@ -63,6 +63,11 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
     ] {
         gauge(Opts::new(name, help), value)?;
     }
+    if let Some(bytes) = sessions.log_bytes() {
+        let help =
+            "Bytes of the write-ahead log of the file, which is kept on the disk when its changes have moved on.";
+        gauge(Opts::new("stickslip_store_log_bytes", help), usize::try_from(bytes).unwrap_or(usize::MAX))?;
+    }
     let build = Opts::new("stickslip_build_info", "Always 1; the labels give the version and the build.")
         .const_label("version", env!("CARGO_PKG_VERSION"))
         .const_label("engine", ENGINE.to_string())

@@ -3,11 +3,12 @@
 
 use std::collections::HashMap;
 
-use tokio_postgres::{Client, Statement};
+use deadpool_postgres::Object;
+use tokio_postgres::{Client, Row, Statement};
 use uuid::Uuid;
 
-use super::client_pool::{ANSWER, ClientPool};
-use super::columns::{Moves, Receipts, Requests, Sessions, from_bigint};
+use super::client_pool::{ANSWER, ClientPool, Parameter, rows};
+use super::columns::{Moves, Pasts, Receipts, Requests, Sessions, from_bigint};
 use super::fault::Fault;
 use super::request::{Change, WriteRequest};
 use super::sql;
@@ -34,20 +35,21 @@ impl WriterConnection {
         !self.client.is_closed()
     }
 
-    /// Makes all changes whose sessions are at the expected sequence and free. Returns the sequence at which each
-    /// session to append to was found, and none if another transaction holds it; sessions that do not exist are
-    /// missing.
+    /// Makes all changes whose sessions are as expected and free. Returns the sequence at which each session to append
+    /// to was found, and whether it was as expected; none if another transaction holds it. Sessions that do not exist
+    /// are missing.
     pub(super) async fn commit_batch(
         &self,
         pool: &ClientPool,
         requests: &[WriteRequest],
-    ) -> Result<HashMap<Uuid, Option<u64>>, Fault> {
-        let (mut appends, mut moves) = (Requests::default(), Moves::default());
+    ) -> Result<HashMap<Uuid, Option<Found>>, Fault> {
+        let (mut appends, mut pasts, mut moves) = (Requests::default(), Pasts::default(), Moves::default());
         let (mut receipts, mut sessions) = (Receipts::default(), Sessions::default());
         for request in requests {
             match &request.change {
                 Change::Create(session, definition) => sessions.push((session, definition.clone())),
-                Change::Append { id, expected, records } => {
+                Change::Append { id, expected, moved_at, records } => {
+                    pasts.push(*moved_at);
                     let last = records.last();
                     let sequence = last.map_or(*expected, |record| record.sequence);
                     appends.push((*id, *expected, sequence, last.map(|record| record.at)));
@@ -56,11 +58,42 @@ impl WriterConnection {
             }
             request.receipt.iter().for_each(|receipt| receipts.push((request.id(), receipt)));
         }
-        let columns = [appends.parameters(), moves.parameters(), receipts.parameters(), sessions.parameters()];
-        let parameters = columns.concat();
+        let parameters = parameters(&appends, &moves, &receipts, &sessions, &pasts);
         // The driver returns once the database is ready again, and so after the commit of a statement without `BEGIN`.
         let commit = async { Ok(self.client.query(&self.batch, &parameters).await?) };
         let found = pool.answer(ANSWER, commit).await?;
-        Ok(found.iter().map(|row| (row.get(0), row.get::<_, Option<i64>>(1).map(from_bigint))).collect())
+        let of = |row: &Row| {
+            let sequence: Option<i64> = row.get(1);
+            (row.get(0), sequence.map(|sequence| Found { sequence: from_bigint(sequence), as_expected: row.get(2) }))
+        };
+        Ok(found.iter().map(of).collect())
     }
+}
+
+/// A session to append to.
+#[derive(Clone, Copy)]
+pub(super) struct Found {
+    pub(super) sequence: u64,
+    /// Whether moves have been appended to it.
+    pub(super) as_expected: bool,
+}
+
+/// Executes the statement of batches without a change: it needs all rights, tables and columns that a change needs.
+pub(super) async fn probe(connection: &Object) -> Result<(), Fault> {
+    let (appends, pasts, moves) = (Requests::default(), Pasts::default(), Moves::default());
+    let (receipts, sessions) = (Receipts::default(), Sessions::default());
+    let parameters = parameters(&appends, &moves, &receipts, &sessions, &pasts);
+    rows(connection, sql::BATCH, &parameters).await.map(drop)
+}
+
+/// The parameters of the statement, in their order.
+fn parameters<'a>(
+    appends: &'a Requests,
+    moves: &'a Moves,
+    receipts: &'a Receipts,
+    sessions: &'a Sessions,
+    pasts: &'a Pasts,
+) -> Vec<Parameter<'a>> {
+    let columns = [appends.parameters(), moves.parameters(), receipts.parameters(), sessions.parameters()];
+    [columns.concat(), pasts.parameters()].concat()
 }

@@ -114,6 +114,11 @@ columns!(Requests, "Requested changes, a row a session.", (Uuid, u64, u64, Optio
     ns: Option<i16> = request.3.map(|at| split_time(at).1),
 });
 
+columns!(Pasts, "When the sessions to append to last moved, a row a session.", Option<Timestamp>, |moved_at| {
+    at: Option<SystemTime> = moved_at.map(|at| split_time(at).0),
+    ns: Option<i16> = moved_at.map(|at| split_time(at).1),
+});
+
 columns!(Moves, "Moves, with the states after them.", (Uuid, i64, &Record), |request| {
     contact: Uuid = request.0,
     sequence: i64 = to_bigint(request.2.sequence),

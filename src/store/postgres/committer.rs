@@ -8,7 +8,7 @@ use uuid::Uuid;
 
 use crate::store::{Changes, Commits, RECEIPT_LIFETIME, Result, StoreError, Tenant};
 
-use super::batch_tx::WriterConnection;
+use super::batch_tx::{Found, WriterConnection};
 use super::client_pool::{ClientPool, Tries};
 use super::columns::{from_bigint, to_bigint};
 use super::fault::Fault;
@@ -122,12 +122,12 @@ impl Committer {
     fn reply_committed(
         &self,
         batch: Vec<WriteRequest>,
-        found: &HashMap<Uuid, Option<u64>>,
+        found: &HashMap<Uuid, Option<Found>>,
         time: Duration,
     ) -> Vec<WriteRequest> {
         self.pool.outage.end();
         let (locked, done): (Vec<_>, Vec<_>) =
-            batch.into_iter().partition(|request| found.get(&request.id()) == Some(&None));
+            batch.into_iter().partition(|request| matches!(found.get(&request.id()), Some(None)));
         if done.is_empty() {
             self.commits.progressed();
         } else {
@@ -140,20 +140,21 @@ impl Committer {
     }
 
     /// Answers a request that was sent, and whose session was found at a sequence.
-    fn reply(&self, found: Option<u64>, request: WriteRequest) {
-        let Change::Append { expected, .. } = &request.change else {
+    fn reply(&self, found: Option<Found>, request: WriteRequest) {
+        let Change::Append { .. } = &request.change else {
             return request.answer(Ok(()));
         };
         match found {
-            Some(found) if found == *expected => answer_known(request, Ok(()), &self.changes),
-            Some(found) if request.receipt.is_none() && !request.in_doubt => {
-                request.answer(Err(StoreError::Stale { found }));
+            Some(Found { as_expected: true, .. }) => answer_known(request, Ok(()), &self.changes),
+            Some(Found { sequence, .. }) if request.receipt.is_none() && !request.in_doubt => {
+                request.answer(Err(StoreError::Stale { found: sequence }));
             }
             found => {
                 // The next batch need not wait for the reasons why a request of this one lost.
                 let (pool, changes) = (Arc::clone(&self.pool), Arc::clone(&self.changes));
                 tokio::spawn(async move {
-                    let unexplained = found.map_or(StoreError::NotFound, |found| StoreError::Stale { found });
+                    let unexplained =
+                        found.map_or(StoreError::NotFound, |found| StoreError::Stale { found: found.sequence });
                     match outcome_of(&pool, &request).await {
                         Ok(false) => request.answer(Err(unexplained)),
                         known => answer_known(request, known.map(drop), &changes),
@@ -187,7 +188,7 @@ fn answer_known(request: WriteRequest, outcome: Result<()>, changes: &Changes) {
 async fn outcome_of(pool: &ClientPool, request: &WriteRequest) -> Result<bool> {
     let (id, expected, last) = match &request.change {
         Change::Create(session, _) => (session.id, None, 0),
-        Change::Append { id, expected, records } => {
+        Change::Append { id, expected, records, .. } => {
             (*id, Some(*expected), records.last().map_or(0, |record| record.sequence))
         }
     };

@@ -74,6 +74,9 @@ fn distrusted(error: &Error) -> bool {
 /// The codes of `idle_in_transaction_session_timeout` and `transaction_timeout`.
 const SILENT_IN_TRANSACTION: [&str; 2] = ["25P03", "25P04"];
 
+/// The codes of `insufficient_privilege`, `undefined_table` and `untranslatable_character`.
+const OPERATOR: [&str; 3] = ["42501", "42P01", "22P05"];
+
 fn refused(refusal: &DbError) -> Fault {
     let text = format!("{} ({})", refusal.message(), refusal.code().code());
     let code = refusal.code();
@@ -90,7 +93,10 @@ fn refused(refusal: &DbError) -> Fault {
         _ if *code == SqlState::LOCK_NOT_AVAILABLE => Fault::Locked(text),
         _ if *code == SqlState::UNIQUE_VIOLATION => Fault::Duplicate(text),
         _ if *code == SqlState::DISK_FULL => Fault::Refused(StoreError::Full(text)),
-        "53" => Fault::Refused(StoreError::Unavailable(text)),
+        // No room or memory, or a fault that the operator of the database mends: no such login, database, right or
+        // table, or an encoding without these letters.
+        "53" | "28" | "3D" => Fault::Refused(StoreError::Unavailable(text)),
+        _ if OPERATOR.contains(&code.code()) => Fault::Refused(StoreError::Unavailable(text)),
         _ if *code == SqlState::QUERY_CANCELED => Fault::Refused(StoreError::Unavailable(text)),
         _ => Fault::Refused(StoreError::Failed(text)),
     }

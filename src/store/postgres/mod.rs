@@ -23,7 +23,7 @@ mod transactions;
 mod writer;
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::{Duration, Instant, SystemTime};
 
 use async_trait::async_trait;
 use jiff::Timestamp;
@@ -35,7 +35,7 @@ use uuid::Uuid;
 use stickslip_wire::{ContactOrder, SessionSummary};
 
 use super::probe::Probe;
-use super::rows;
+use super::rows::{self, RowReader as _};
 use super::schema::SchemaError;
 use super::{
     CONTACT_BYTES, Changes, Commits, Extent, LabelChange, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record,
@@ -126,6 +126,11 @@ async fn prepare(target: &ConnectTarget) -> Result<()> {
         let prepared = async {
             let opened = timeout(ANSWER, target.open()).await.map_err(|_| Fault::no_answer())?;
             let mut client = opened?;
+            let encoding: String = client.query_one(sql::ENCODING, &[]).await?.get(0);
+            if encoding != "UTF8" {
+                let why = format!("it has the encoding {encoding}: make one with ENCODING 'UTF8' TEMPLATE template0");
+                return Err(Fault::Refused(StoreError::Failed(why)));
+            }
             schema::migrate(&mut client, schema::MIGRATIONS).await?;
             client.batch_execute(sql::PROBE_NOTIFY).await?;
             Ok::<_, Fault>(())
@@ -167,7 +172,12 @@ impl Store for PostgresStore {
             done.map(drop).map_err(Fault::into_store_error)
         };
         execute(sql::PING).await?;
-        self.probe.outcome(execute(sql::PROBE)).await?;
+        let probe = async {
+            execute(sql::PROBE).await?;
+            let done = client_pool::try_once!(self.pool, READY, connection => batch_tx::probe(connection));
+            done.map_err(Fault::into_store_error)
+        };
+        self.probe.outcome(probe).await?;
         let stalled = self.writer.commits.stalled();
         if stalled < STALLED {
             return Ok(());
@@ -182,7 +192,11 @@ impl Store for PostgresStore {
 
     async fn extent(&self, id: Uuid) -> Result<Extent> {
         match self.pool.row(sql::EXTENT, &[&id]).await? {
-            Some(row) => rows::extent(&mut reader(&row)),
+            Some(row) => {
+                let mut columns = reader(&row);
+                let extent = rows::extent(&mut columns)?;
+                Ok(Extent { moved_at: Some(columns.time()?), ..extent })
+            }
             None => Err(self.pool.missing(id).await),
         }
     }
@@ -224,7 +238,24 @@ impl Store for PostgresStore {
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
-        self.writer.write(Change::Append { id, expected, records }, receipt).await
+        self.writer.write(Change::Append { id, expected, moved_at: None, records }, receipt).await
+    }
+
+    async fn append_after(
+        &self,
+        id: Uuid,
+        (expected, moved_at): (u64, Timestamp),
+        records: Vec<Record>,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
+        let moved_at = Some(moved_at);
+        self.writer.write(Change::Append { id, expected, moved_at, records }, receipt).await
+    }
+
+    async fn now(&self) -> Result<Timestamp> {
+        let row = self.pool.row(sql::NOW, &[]).await?;
+        let now = row.map_or_else(|| Ok(Timestamp::now()), |row| Timestamp::try_from(row.get::<_, SystemTime>(0)));
+        now.map_err(|error| StoreError::Failed(format!("the time of the database cannot be read: {error}")))
     }
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
@@ -293,6 +324,8 @@ impl Store for PostgresStore {
         let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
         let line = |id: Uuid| format!("moves of contact {id} are stored, but the contact is not");
         let jobs = self.pool.rows(sql::JOB_FAULTS, &[]).await?;
-        Ok(orphans.iter().map(|row| line(row.get(0))).chain(jobs.iter().map(|row| row.get(0))).collect())
+        let receipts = self.pool.rows(sql::RECEIPT_FAULTS, &[]).await?;
+        let texts = jobs.iter().chain(&receipts).map(|row| row.get(0));
+        Ok(orphans.iter().map(|row| line(row.get(0))).chain(texts).collect())
     }
 }

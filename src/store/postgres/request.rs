@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use jiff::Timestamp;
 use tokio::sync::{OwnedSemaphorePermit, oneshot};
 use uuid::Uuid;
 
@@ -12,8 +13,8 @@ use super::fault::LOCK_WAIT;
 pub(super) enum Change {
     /// A new session, with its definition as text.
     Create(Session, String),
-    /// Moves for a session at a sequence.
-    Append { id: Uuid, expected: u64, records: Vec<Record> },
+    /// Moves for a session at a sequence, which last moved at this time, if that is known.
+    Append { id: Uuid, expected: u64, moved_at: Option<Timestamp>, records: Vec<Record> },
 }
 
 /// What a change locks.

@@ -10,6 +10,7 @@ pub const MIGRATIONS: &[&str] = &[
     include_str!("schema_2.sql"),
     include_str!("schema_3.sql"),
     include_str!("schema_4.sql"),
+    include_str!("schema_5.sql"),
 ];
 
 /// Held while tables are migrated, so that of several replicas that start together one does it: "stickslip" in ASCII,
@@ -33,6 +34,9 @@ pub async fn migrate(client: &mut Client, migrations: &[&str]) -> Result<(), Sch
     transaction.batch_execute(ADVISORY_LOCK).await?;
     transaction.batch_execute(CREATE_VERSIONS).await?;
     let found = transaction.query_one(VERSION, &[]).await?.get(0);
+    if found == 0 {
+        tracing::warn!("there was no store in the database: an empty one is made");
+    }
     for (version, script) in schema::pending(found, migrations).map_err(SchemaError::Version)? {
         transaction.batch_execute(script).await?;
         transaction.execute(RECORD_VERSION, &[&version]).await?;

@@ -51,22 +51,25 @@ pub(super) const ALLOW_SHORT: &str = "SET statement_timeout = '10s'";
 pub(super) const PREPARE_WRITER: &str = "SET plan_cache_mode = force_generic_plan; SET enable_seqscan = off";
 
 /// Makes sessions. Locks those to append to, in the order of their identifiers, but for those that another transaction
-/// holds, and appends moves to those of them that are at the expected sequence. Stores the receipts of what it has
-/// changed alone. Returns the sessions to append to that exist, with their sequences unless another transaction holds
-/// them.
+/// holds, and appends moves to those of them that are at the expected sequence, and last moved when they are expected
+/// to have: a database that is put back from a dump may have another past of the same length. Stores the receipts of
+/// what it has changed alone. Returns the sessions to append to that exist, with their sequences unless another
+/// transaction holds them, and whether they were as expected.
 pub(super) const BATCH: &str = announcing!(
     "won",
     "
 WITH locked AS (
-    SELECT id, sequence FROM contacts WHERE id = ANY($1::uuid[]) ORDER BY id FOR NO KEY UPDATE SKIP LOCKED
+    SELECT id, sequence, updated_at, updated_ns FROM contacts WHERE id = ANY($1::uuid[]) ORDER BY id
+    FOR NO KEY UPDATE SKIP LOCKED
 ), won AS (
     UPDATE contacts
     SET sequence = request.sequence,
         updated_at = coalesce(request.at, contacts.updated_at),
         updated_ns = coalesce(request.ns, contacts.updated_ns)
-    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[])
-        AS request (id, expected, sequence, at, ns)
+    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[], $45::timestamptz[],
+        $46::smallint[]) AS request (id, expected, sequence, at, ns, moved_at, moved_ns)
     JOIN locked ON locked.id = request.id AND locked.sequence = request.expected
+        AND (request.moved_at IS NULL OR (locked.updated_at, locked.updated_ns) = (request.moved_at, request.moved_ns))
     WHERE contacts.id = locked.id
     RETURNING contacts.id
 ), moved AS (
@@ -95,7 +98,8 @@ WITH locked AS (
     JOIN (SELECT id FROM won UNION ALL SELECT id FROM made) AS changed ON changed.id = receipt.contact
     ORDER BY receipt.key
 ), found AS (
-    SELECT contacts.id, locked.sequence FROM contacts LEFT JOIN locked ON locked.id = contacts.id
+    SELECT contacts.id, locked.sequence, won.id IS NOT NULL
+    FROM contacts LEFT JOIN locked ON locked.id = contacts.id LEFT JOIN won ON won.id = contacts.id
     WHERE contacts.id = ANY($1::uuid[])
 )"
 );
@@ -123,6 +127,12 @@ pub(super) const PROBE: &str = "
 INSERT INTO receipts (key, fingerprint, sequence, body) VALUES ('', '', 0, '')
 ON CONFLICT (key) DO UPDATE SET created_at = now()";
 
+/// The time of the database.
+pub(super) const NOW: &str = "SELECT clock_timestamp()";
+
+/// Letters are stored as UTF-8.
+pub(super) const ENCODING: &str = "SHOW server_encoding";
+
 /// Checks that the database answers.
 pub(super) const PING: &str = "";
 
@@ -132,7 +142,7 @@ FROM contacts WHERE id = $1";
 
 pub(super) const EXTENT: &str = "
 SELECT tenant, sequence, label, octet_length(definition)::bigint,
-    coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)::bigint
+    coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)::bigint, updated_at, updated_ns
 FROM contacts WHERE id = $1";
 
 /// The contacts and bytes of a tenant. A contact takes `$2` bytes besides its definition and its snapshot, a move `$3`,
@@ -140,8 +150,7 @@ FROM contacts WHERE id = $1";
 pub(super) const USAGE: &str = "
 SELECT count(*), coalesce(sum($2::bigint + octet_length(definition) + $3::bigint * sequence
         + coalesce((SELECT octet_length(state) FROM snapshots WHERE contact = contacts.id), 0)), 0)::bigint
-    + (SELECT coalesce(sum($4::bigint + octet_length(body) + 2 * octet_length(key)), 0)::bigint FROM receipts
-        WHERE CASE WHEN strpos(key, ' ') > 0 THEN split_part(key, ' ', 1) ELSE '' END = $1)
+    + (SELECT coalesce(sum($4::bigint + bytes), 0)::bigint FROM receipts WHERE tenant = $1)
 FROM contacts WHERE tenant = $1";
 
 pub(super) const SEQUENCE: &str = "SELECT sequence FROM contacts WHERE id = $1";
@@ -323,6 +332,11 @@ WITH RECURSIVE owners (contact) AS (
 )
 SELECT contact FROM owners
 WHERE contact IS NOT NULL AND NOT EXISTS (SELECT 1 FROM contacts WHERE contacts.id = owners.contact)";
+
+/// Kept replies that cannot be sent again, but for that of the probe.
+pub(super) const RECEIPT_FAULTS: &str = "
+SELECT 'the kept reply for the key ' || key || ' cannot be sent again' FROM receipts
+WHERE key <> '' AND (octet_length(fingerprint) <> 32 OR sequence < 0 OR octet_length(body) = 0)";
 
 /// Jobs whose columns contradict each other or their chunks. A job that has not failed has a row for every chunk.
 pub(super) const JOB_FAULTS: &str = "

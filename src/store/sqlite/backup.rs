@@ -13,6 +13,7 @@ use rusqlite::Connection;
 use super::file::{MARK, beside, check_mark, lock, open_private, sync_folder};
 use super::readers::open_reader;
 use super::schema::{self, APPLICATION, IN_USE};
+use super::wal_check;
 
 /// How often the size of a copy is looked at.
 const POLL: Duration = Duration::from_millis(100);
@@ -24,6 +25,7 @@ pub(super) fn open_read_only(path: &Path) -> Result<Connection, String> {
     if fs::symlink_metadata(beside(path, "-wal")).is_err() && mark(path).is_ok_and(|mark| mark == IN_USE) {
         check_mark(IN_USE, path, false)?;
     }
+    wal_check::check_log(&beside(path, "-wal"))?;
     let describe = |error: rusqlite::Error| error.to_string();
     let database = open_reader(path, false).map_err(describe)?;
     let application: i32 = database.pragma_query_value(None, "application_id", |row| row.get(0)).map_err(describe)?;

@@ -10,12 +10,11 @@ use uuid::Uuid;
 
 use crate::store::rows::{RowReader as _, tenant};
 use crate::store::{
-    self, EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError,
+    self, Clock, EXPIRED_LIFETIME, LabelChange, RECEIPT_LIFETIME, Receipt, Record, Session, Snapshot, StoreError,
 };
 
 use super::columns::{
-    CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, nanoseconds_ago, to_integer,
-    to_nanoseconds,
+    CONTACTS, MOVE_COLUMNS, all, clamped_nanoseconds, execute, first, insert_move, to_integer, to_nanoseconds,
 };
 use super::fault::Fault;
 use super::fork::{Copying, Fork};
@@ -51,7 +50,10 @@ pub(super) type Reply = oneshot::Sender<store::Result<u64>>;
 pub(super) struct Change {
     /// Makes it; called again if its transaction fails.
     pub(super) apply: Box<Apply>,
+    /// Rows that it writes, roughly; an append of one writes by one statement.
     pub(super) weight: usize,
+    /// Whether it appends moves.
+    pub(super) is_append: bool,
     /// The sessions and jobs whose listeners are to be woken when it is made.
     pub(super) touched: Vec<Uuid>,
     /// Kept with it.
@@ -60,12 +62,17 @@ pub(super) struct Change {
 }
 
 impl Change {
+    /// Whether it writes by one statement, which is a transaction of its own.
+    pub(super) fn is_one_statement(&self) -> bool {
+        self.is_append && self.weight == 1 && self.receipt.is_none()
+    }
+
     /// Makes the change, and keeps its receipt, unless it goes on in small steps.
     pub(super) fn make(&self, transaction: &mut Transaction<'_>) -> Result<Done, Fault> {
-        check_key(transaction.database, self.receipt.as_ref())?;
+        check_key(transaction.database, self.receipt.as_ref(), transaction.clock)?;
         let done = (self.apply)(transaction)?;
         if !matches!(done, Done::Copying(..)) {
-            insert_receipt(transaction.database, self.receipt.as_ref())?;
+            insert_receipt(transaction.database, self.receipt.as_ref(), transaction.clock)?;
         }
         Ok(done)
     }
@@ -76,6 +83,7 @@ pub(super) struct Transaction<'a> {
     pub(super) cache: &'a mut SequenceCache,
     /// A number that is free for a new contact.
     pub(super) number: i64,
+    pub(super) clock: Clock,
 }
 
 pub(super) enum Done {
@@ -100,15 +108,20 @@ impl Transaction<'_> {
     }
 
     pub(super) fn append(&mut self, id: Uuid, expected: u64, records: &[Record]) -> Result<Done, Fault> {
-        let number = match self.cache.get(&id) {
-            Some((number, sequence)) if *sequence == expected => *number,
-            _ => number_at(self.database, id, expected)?,
+        let last = records.last().map_or(expected, |last| last.sequence);
+        let number = match self.cache.get_mut(&id) {
+            Some((number, sequence)) if *sequence == expected => {
+                *sequence = last;
+                *number
+            }
+            _ => {
+                let number = number_at(self.database, id, expected)?;
+                self.cache.insert(id, (number, last));
+                number
+            }
         };
         let mut insert = self.database.prepare_cached(&INSERT_MOVE)?;
         records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
-        if let Some(last) = records.last() {
-            self.cache.insert(id, (number, last.sequence));
-        }
         Ok(Done::Made(0))
     }
 
@@ -146,7 +159,7 @@ impl Transaction<'_> {
     /// Deletes receipts past their time, and marks of sessions that expired long ago; returns 1 if there may be more of
     /// them.
     pub(super) fn purge_records(&self) -> Result<Done, Fault> {
-        let cutoff = nanoseconds_ago(RECEIPT_LIFETIME);
+        let cutoff = clamped_nanoseconds(self.clock.ago(RECEIPT_LIFETIME));
         let sql = "SELECT number, at, length(body) FROM receipts ORDER BY number LIMIT ?1";
         let oldest: Vec<(i64, i64, i64)> =
             all(self.database, sql, [RECEIPTS_AT_ONCE], |row| Ok((row.next()?, row.next()?, row.next()?)))?;
@@ -161,7 +174,8 @@ impl Transaction<'_> {
             execute(self.database, "DELETE FROM receipts WHERE number <= ?1", [last])?;
         }
         let sql = "DELETE FROM expired WHERE id IN (SELECT id FROM expired WHERE at <= ?1 LIMIT ?2)";
-        let marks = execute(self.database, sql, [nanoseconds_ago(EXPIRED_LIFETIME), MARKS_AT_ONCE])?;
+        let marks =
+            execute(self.database, sql, [clamped_nanoseconds(self.clock.ago(EXPIRED_LIFETIME)), MARKS_AT_ONCE])?;
         let is_full =
             count == RECEIPTS_AT_ONCE || bytes > RECEIPT_BYTES_AT_ONCE || to_integer(marks as u64)? == MARKS_AT_ONCE;
         Ok(Done::Made(u64::from(is_full)))
@@ -172,7 +186,7 @@ impl Transaction<'_> {
         let mut expired = 0;
         for id in ids {
             self.cache.remove(id);
-            expired += u64::from(expire(self.database, *id, since)?);
+            expired += u64::from(expire(self.database, *id, since, self.clock)?);
         }
         Ok(Done::Removed(expired))
     }
@@ -185,7 +199,7 @@ fn delete_contact(database: &Connection, number: i64) -> rusqlite::Result<()> {
 }
 
 /// Expires a session, unless it has been deleted or has moved meanwhile.
-fn expire(database: &Connection, id: Uuid, since: Timestamp) -> rusqlite::Result<bool> {
+fn expire(database: &Connection, id: Uuid, since: Timestamp, clock: Clock) -> rusqlite::Result<bool> {
     let sql = format!(
         "SELECT c.number, c.tenant FROM {CONTACTS}
          WHERE c.id = ?1 AND iif(m.sequence > c.inherited, m.at, c.initial_updated_at) < ?2"
@@ -194,7 +208,7 @@ fn expire(database: &Connection, id: Uuid, since: Timestamp) -> rusqlite::Result
     let idle = first(database, &sql, which, |row| Ok((row.next()?, tenant(row)?)))?;
     let Some((number, tenant)) = idle else { return Ok(false) };
     delete_contact(database, number)?;
-    let expired = params![id.to_string(), to_nanoseconds(Timestamp::now())?, tenant.name()];
+    let expired = params![id.to_string(), to_nanoseconds(clock.now())?, tenant.name()];
     execute(database, "INSERT INTO expired (id, at, tenant) VALUES (?1, ?2, ?3)", expired)?;
     Ok(true)
 }

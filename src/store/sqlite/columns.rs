@@ -2,7 +2,6 @@
 
 use std::error::Error;
 use std::str::FromStr as _;
-use std::time::Duration;
 
 use jiff::Timestamp;
 use rusqlite::{CachedStatement, Connection, OptionalExtension as _, Params, Row, params, types::Type};
@@ -178,11 +177,6 @@ pub(super) fn to_nanoseconds(at: Timestamp) -> rusqlite::Result<i64> {
 /// A time to compare stored ones with: beyond their range, the end of it.
 pub(super) fn clamped_nanoseconds(at: Timestamp) -> i64 {
     i64::try_from(at.as_nanosecond()).unwrap_or(if at < Timestamp::UNIX_EPOCH { i64::MIN } else { i64::MAX })
-}
-
-/// The time so long ago; beyond the range of stored times, the end of it.
-pub(super) fn nanoseconds_ago(time: Duration) -> i64 {
-    clamped_nanoseconds(Timestamp::now().checked_sub(time).unwrap_or(Timestamp::MIN))
 }
 
 /// A count as it is stored.

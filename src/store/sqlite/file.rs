@@ -8,6 +8,7 @@ use std::os::unix::fs::{FileExt as _, OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use jiff::Timestamp;
 use rusqlite::config::DbConfig;
 use rusqlite::{Connection, OpenFlags};
 
@@ -76,9 +77,8 @@ pub(super) fn open(path: &Path) -> Result<Access, String> {
     let (log, had_log, had_shared_memory) =
         (beside(path, "-wal"), beside(path, "-wal").exists(), shared_memory.exists());
     let connected = connect(path).and_then(|database| {
-        let files =
-            OpenFiles::at([path, &log, &shared_memory]).map_err(|error| Refusal::Unusable(error.to_string()))?;
-        Ok((database, Arc::new(files)))
+        let files = OpenFiles::written(Arc::clone(&lock), [path, &log, &shared_memory]);
+        Ok((database, Arc::new(files.map_err(|error| Refusal::Unusable(error.to_string()))?)))
     });
     match connected {
         Ok((database, files)) => Ok(Access::Writable(Opened { database, lock, files })),
@@ -138,6 +138,7 @@ fn make(path: &Path, partial: &Path) -> Result<File, String> {
     schema::migrate(&mut database, MIGRATIONS).map_err(|error| describe(&error))?;
     database.close().map_err(|(_, error)| describe(&error))?;
     std::fs::rename(partial, path).and_then(|()| sync_folder(path)).map_err(|error| describe(&error))?;
+    tracing::warn!(path = %path.display(), "there was no store at this path: an empty one has been made");
     Ok(file)
 }
 
@@ -248,7 +249,14 @@ fn length(file: &File) -> Result<u64, String> {
     if about.is_file() { Ok(about.len()) } else { Err("it is not a file".to_owned()) }
 }
 
-fn length_at(path: &Path) -> u64 {
+/// When a database or its log was last written to.
+pub(super) fn last_write(path: &Path) -> Option<Timestamp> {
+    let written = |path: &Path| std::fs::metadata(path).and_then(|about| about.modified()).ok();
+    let last = written(path).max(written(&beside(path, "-wal")))?;
+    Timestamp::try_from(last).ok()
+}
+
+pub(super) fn length_at(path: &Path) -> u64 {
     std::fs::metadata(path).map_or(0, |about| about.len())
 }
 

@@ -14,7 +14,7 @@ use crate::store::{Receipt, Result, StoreError, Tenant};
 
 use super::SqliteStore;
 use super::change::{Done, Transaction};
-use super::columns::{all, execute, first, nanoseconds_ago, to_integer, to_nanoseconds};
+use super::columns::{all, clamped_nanoseconds, execute, first, to_integer, to_nanoseconds};
 use super::fault::Fault;
 
 impl Transaction<'_> {
@@ -69,7 +69,8 @@ impl Transaction<'_> {
     fn purge_job(&self) -> Result<Done, Fault> {
         let sql = "DELETE FROM jobs WHERE number =
                        (SELECT number FROM jobs WHERE finished_at < ?1 OR created_at < ?2 LIMIT 1)";
-        let deleted = execute(self.database, sql, [JOB_LIFETIME, JOB_TIME_LIMIT].map(nanoseconds_ago))?;
+        let before = [JOB_LIFETIME, JOB_TIME_LIMIT].map(|time| clamped_nanoseconds(self.clock.ago(time)));
+        let deleted = execute(self.database, sql, before)?;
         Ok(Done::Made(deleted as u64))
     }
 }

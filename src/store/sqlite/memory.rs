@@ -11,7 +11,7 @@ use tokio::sync::{RwLock, Semaphore};
 use tokio::task::spawn_blocking;
 
 use crate::store::schema::SchemaError;
-use crate::store::{Changes, Commits, RECEIPT_OVERHEAD, Result, StoreError};
+use crate::store::{Changes, Clock, Commits, RECEIPT_OVERHEAD, Result, StoreError};
 
 use super::change::{Change, Done, Transaction};
 use super::columns::execute;
@@ -38,12 +38,16 @@ pub(super) struct InMemory {
 
 impl InMemory {
     /// An empty database.
-    pub(super) fn new(changes: Arc<Changes>, commits: Arc<Commits>) -> Result<InMemory, SchemaError<rusqlite::Error>> {
+    pub(super) fn new(
+        changes: Arc<Changes>,
+        commits: Arc<Commits>,
+        clock: Clock,
+    ) -> Result<InMemory, SchemaError<rusqlite::Error>> {
         let mut database = Connection::open_in_memory()?;
         database.pragma_update(None, "temp_store", "MEMORY")?;
         file::prepare(&database)?;
         schema::migrate(&mut database, MIGRATIONS)?;
-        let mut writer = Writer::new(database, Arc::default(), changes, commits)?;
+        let mut writer = Writer::new(database, Arc::default(), changes, commits, clock)?;
         // As every store, it begins by looking for moves without a contact.
         writer.background_step();
         Ok(InMemory { writer: Arc::new(Mutex::new(writer)), gate: Arc::default(), reads: Arc::new(Semaphore::new(1)) })
@@ -129,7 +133,7 @@ mod tests {
         for number in 0..10 {
             let request = RequestKey { key: number.to_string(), fingerprint: [0; 32] };
             let receipt = Receipt { request, reply: Reply { created: None, sequence: 1, body: vec![0; 1_000] } };
-            insert_receipt(&database, Some(&receipt)).unwrap();
+            insert_receipt(&database, Some(&receipt), Clock::starting_at(jiff::Timestamp::now())).unwrap();
             database.execute("INSERT INTO expired (id, at, tenant) VALUES (?1, ?1, '')", [number]).unwrap();
         }
         let kept = |sql| all(&database, sql, [], |row| row.next::<String>()).unwrap();

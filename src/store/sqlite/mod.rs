@@ -37,7 +37,7 @@ use uuid::Uuid;
 
 use super::probe::Probe;
 use super::{
-    Changes, Commits, Extent, IsSmall, LabelChange, Page, Receipt, Record, Result, Session, Snapshot, Store,
+    Changes, Clock, Commits, Extent, IsSmall, LabelChange, Page, Receipt, Record, Result, Session, Snapshot, Store,
     StoreError, Tenant, Usage, Whole,
 };
 use crate::metrics::Counted;
@@ -69,6 +69,7 @@ pub struct SqliteStore {
     /// The chunks that are worked on: none of them outlives the process.
     claims: Mutex<HashSet<(Uuid, u64)>>,
     probe: Probe,
+    clock: Clock,
 }
 
 enum Place {
@@ -87,6 +88,8 @@ impl SqliteStore {
     /// # Errors
     /// Why it cannot be used, in one line. The file is as it was then.
     pub fn open(path: &Path) -> Result<SqliteStore, String> {
+        // The last write tells the time, if the clock of the system is ahead by now.
+        let clock = Clock::starting_at(file::last_write(path).unwrap_or_else(Timestamp::now));
         let file::Opened { database, lock, files } = match file::open(path)? {
             file::Access::Writable(opened) => opened,
             file::Access::Full { why, readers } => {
@@ -99,8 +102,9 @@ impl SqliteStore {
         };
         let readers = Readers::new(path.to_owned(), Arc::clone(&files), Some(Arc::clone(&lock)), false);
         let mut store = SqliteStore::reading(readers, None);
+        store.clock = clock;
         let (changes, commits) = (Arc::clone(&store.changes), Arc::clone(&store.commits));
-        let writer = Writer::new(database, files, changes, commits).map_err(|error| error.to_string())?;
+        let writer = Writer::new(database, files, changes, commits, clock).map_err(|error| error.to_string())?;
         let (sender, requests) = mpsc::channel(QUEUE);
         let thread = std::thread::Builder::new().name("sqlite-writer".to_owned()).spawn(move || {
             writer.run(requests);
@@ -116,8 +120,10 @@ impl SqliteStore {
     /// Why it cannot be made, in one line.
     pub fn in_memory() -> Result<SqliteStore, String> {
         let (changes, commits) = (Arc::default(), Arc::new(Commits::new("memory")));
-        let database = InMemory::new(Arc::clone(&changes), Arc::clone(&commits)).map_err(|error| error.to_string())?;
-        Ok(SqliteStore::at(Place::Memory(database), changes, commits))
+        let clock = Clock::starting_at(Timestamp::now());
+        let database = InMemory::new(Arc::clone(&changes), Arc::clone(&commits), clock);
+        let place = Place::Memory(database.map_err(|error| error.to_string())?);
+        Ok(SqliteStore::at(place, changes, commits))
     }
 
     /// A store in a file, without a writer.
@@ -126,7 +132,8 @@ impl SqliteStore {
     }
 
     fn at(place: Place, changes: Arc<Changes>, commits: Arc<Commits>) -> SqliteStore {
-        SqliteStore { writer: None, place, changes, commits, claims: Mutex::default(), probe: Probe::default() }
+        let (claims, probe, clock) = (Mutex::default(), Probe::default(), Clock::starting_at(Timestamp::now()));
+        SqliteStore { writer: None, place, changes, commits, claims, probe, clock }
     }
 
     /// Opens a file for reading, while a process may serve it. Changes fail.
@@ -170,9 +177,13 @@ impl SqliteStore {
         receipt: Option<Receipt>,
         apply: impl Fn(&mut Transaction<'_>) -> Result<Done, Fault> + Send + 'static,
     ) -> Result<u64> {
-        let _pending = Counted::by(&self.commits.pending);
         let (reply, outcome) = oneshot::channel();
-        let request = Change { apply: Box::new(apply), weight, touched: touched.into(), receipt, reply };
+        let (apply, touched) = (Box::new(apply), touched.into());
+        self.send(Change { apply, weight, is_append: false, touched, receipt, reply }, outcome).await
+    }
+
+    async fn send(&self, request: Change, outcome: oneshot::Receiver<Result<u64>>) -> Result<u64> {
+        let _pending = Counted::by(&self.commits.pending);
         match (&self.place, &self.writer) {
             (Place::Memory(database), _) => database.change(request).await,
             // A request that is not sent is dropped, and has no outcome.
@@ -244,14 +255,14 @@ impl Store for SqliteStore {
 
     async fn rename(&self, id: Uuid, label: LabelChange, expected: u64, receipt: Option<Receipt>) -> Result<()> {
         let rename = move |transaction: &mut Transaction<'_>| transaction.rename(id, &label, expected);
-        self.change(1, [], receipt, rename).await.map(drop)
+        self.change(1, [id], receipt, rename).await.map(drop)
     }
 
     async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
-        let weight = records.len().max(1);
-        self.change(weight, [id], receipt, move |transaction| transaction.append(id, expected, &records))
-            .await
-            .map(drop)
+        let ((reply, outcome), weight) = (oneshot::channel(), records.len().max(1));
+        let apply = Box::new(move |transaction: &mut Transaction<'_>| transaction.append(id, expected, &records));
+        let touched = vec![id];
+        self.send(Change { apply, weight, is_append: true, touched, receipt, reply }, outcome).await.map(drop)
     }
 
     async fn history(&self, id: Uuid, after: u64, limit: usize) -> Result<Vec<Record>> {
@@ -277,8 +288,8 @@ impl Store for SqliteStore {
     }
 
     async fn receipt(&self, key: &str) -> Result<Option<Receipt>> {
-        let key = key.to_owned();
-        self.look_up(move |database| read::receipt(database, &key)).await
+        let (key, clock) = (key.to_owned(), self.clock);
+        self.look_up(move |database| read::receipt(database, &key, clock)).await
     }
 
     async fn snapshot(&self, id: Uuid) -> Result<Option<Snapshot>> {
@@ -310,12 +321,30 @@ impl Store for SqliteStore {
         Ok(expired)
     }
 
+    fn is_exclusive(&self) -> bool {
+        match &self.place {
+            Place::File { readers, .. } => readers.are_ours(),
+            Place::Memory(_) => true,
+        }
+    }
+
+    async fn now(&self) -> Result<Timestamp> {
+        Ok(self.clock.now())
+    }
+
     fn changes(&self) -> &Changes {
         &self.changes
     }
 
     fn commits(&self) -> &Commits {
         &self.commits
+    }
+
+    fn log_bytes(&self) -> Option<u64> {
+        match &self.place {
+            Place::File { readers, .. } => Some(readers.log_bytes()),
+            Place::Memory(_) => None,
+        }
     }
 
     async fn check_integrity(&self) -> Result<Vec<String>> {

@@ -6,14 +6,12 @@ use uuid::Uuid;
 
 use crate::store::rows::{self, RowReader as _};
 use crate::store::{
-    CONTACT_BYTES, Extent, IsSmall, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session, Snapshot,
-    Tenant, Usage, Whole,
+    CONTACT_BYTES, Clock, Extent, IsSmall, Page, RECEIPT_LIFETIME, RECEIPT_OVERHEAD, Receipt, Record, Session,
+    Snapshot, Tenant, Usage, Whole,
 };
 use stickslip_wire::{ContactOrder, SessionSummary};
 
-use super::columns::{
-    CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, all, clamped_nanoseconds, first, nanoseconds_ago, record, to_integer,
-};
+use super::columns::{CONTACTS, MOVE_COLUMNS, SUMMARY_COLUMNS, all, clamped_nanoseconds, first, record, to_integer};
 use super::fault::Fault;
 use super::statements::{missing, number_and_sequence};
 
@@ -50,6 +48,11 @@ pub(super) fn load(database: &Connection, id: Uuid, is_small: IsSmall) -> Result
     Ok((extent, Some(Whole { session, moves })))
 }
 
+/// How many replies of a tenant are kept, and their bytes. All of it is in an index, with these very expressions.
+const KEPT_REPLIES: &str = "
+SELECT count(*), coalesce(sum(octet_length(body) + 2 * octet_length(key)), 0) FROM receipts
+WHERE substr(key, 1, instr(key, ' ')) = ?1";
+
 /// Bytes that a move takes in the file, with the longest name of a key and the unused part of its page.
 pub(super) const MOVE_BYTES: u64 = 220;
 
@@ -63,18 +66,11 @@ pub(super) fn usage(database: &Connection, tenant: &Tenant) -> Result<Usage, Fau
     );
     let stored = first(database, &sql, [tenant.name()], |row| Ok((row.count()?, row.count()?)))?;
     let (contacts, stored) = stored.unwrap_or_default();
-    // The keys of a tenant with a name begin with it and a space, and lie together in their index.
-    let receipts = |which: &str| {
-        format!(
-            "SELECT coalesce(sum({RECEIPT_OVERHEAD} + octet_length(body) + 2 * octet_length(key)), 0) FROM receipts
-             WHERE {which}"
-        )
-    };
-    let kept = match tenant.name() {
-        "" => first(database, &receipts("instr(key, ' ') = 0"), [], |row| row.count()),
-        name => first(database, &receipts("key > ?1 || ' ' AND key < ?1 || '!'"), [name], |row| row.count()),
-    }?;
-    Ok(Usage { contacts, bytes: stored + kept.unwrap_or(0) })
+    // The keys of a tenant with a name begin with it and a space.
+    let prefix = if tenant.name().is_empty() { String::new() } else { format!("{} ", tenant.name()) };
+    let kept = first(database, KEPT_REPLIES, [prefix], |row| Ok((row.count()?, row.count()?)))?;
+    let (count, bytes) = kept.unwrap_or_default();
+    Ok(Usage { contacts, bytes: stored + RECEIPT_OVERHEAD * count + bytes })
 }
 
 pub(super) fn list(
@@ -120,9 +116,10 @@ pub(super) fn count_moves(database: &Connection, id: Uuid, end: u64) -> Result<u
     Ok(first(database, sql, [number, to_integer(end)?], |row| row.count())?.unwrap_or(0))
 }
 
-pub(super) fn receipt(database: &Connection, key: &str) -> Result<Option<Receipt>, Fault> {
+pub(super) fn receipt(database: &Connection, key: &str, clock: Clock) -> Result<Option<Receipt>, Fault> {
     let sql = "SELECT fingerprint, created, sequence, body FROM receipts WHERE key = ?1 AND at > ?2";
-    Ok(first(database, sql, params![key, nanoseconds_ago(RECEIPT_LIFETIME)], |row| rows::receipt(key, row))?)
+    let after = clamped_nanoseconds(clock.ago(RECEIPT_LIFETIME));
+    Ok(first(database, sql, params![key, after], |row| rows::receipt(key, row))?)
 }
 
 pub(super) fn snapshot(database: &Connection, id: Uuid) -> Result<Option<Snapshot>, Fault> {
@@ -177,6 +174,10 @@ pub(super) fn check_integrity(database: &Connection) -> Result<Vec<String>, Faul
          FROM replies AS r INNER JOIN contacts AS c ON c.id = r.id
          WHERE r.sequence > coalesce((SELECT max(sequence) FROM moves WHERE contact = c.number), 0)",
     )?);
+    found.extend(texts(
+        "SELECT 'the kept reply ' || number || ' cannot be sent again' FROM receipts
+         WHERE length(fingerprint) <> 32 OR sequence < 0 OR NOT json_valid(CAST(body AS TEXT))",
+    )?);
     found.extend(texts(JOB_FAULTS)?);
     Ok(found)
 }
@@ -206,3 +207,20 @@ SELECT 'job ' || id || ': its request is not JSON' FROM jobs WHERE NOT json_vali
 UNION ALL
 SELECT 'the chunk ' || chunk || ' of job number ' || job || ' belongs to no job' FROM job_chunks
 WHERE job NOT IN (SELECT number FROM jobs)";
+
+#[cfg(test)]
+mod tests {
+    use rusqlite::Connection;
+
+    use super::KEPT_REPLIES;
+    use crate::store::sqlite::schema::{MIGRATIONS, migrate};
+
+    #[test]
+    fn the_space_of_kept_replies_is_read_from_an_index_alone() {
+        let mut database = Connection::open_in_memory().unwrap();
+        migrate(&mut database, MIGRATIONS).unwrap();
+        let plan = format!("EXPLAIN QUERY PLAN {KEPT_REPLIES}");
+        let plan: String = database.query_row(&plan, [""], |row| row.get(3)).unwrap();
+        assert!(plan.contains("USING COVERING INDEX receipts_by_tenant"), "{plan}");
+    }
+}

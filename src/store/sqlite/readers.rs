@@ -15,6 +15,7 @@ use tokio::task::spawn_blocking;
 use crate::store::{Result, StoreError};
 
 use super::fault::{Fault, is_locked};
+use super::file;
 use super::open_files::OpenFiles;
 use super::{BUSY, STILL_BUSY};
 
@@ -103,6 +104,15 @@ impl Readers {
             question(database)
         })
         .await
+    }
+
+    /// Whether the files are still those that were opened, as far as is known.
+    pub(super) fn are_ours(&self) -> bool {
+        self.idle.files.are_ours()
+    }
+
+    pub(super) fn log_bytes(&self) -> u64 {
+        file::length_at(&file::beside(&self.idle.path, "-wal"))
     }
 
     pub(super) fn close(&self) {

@@ -1,31 +1,30 @@
 //! Statements that several changes make within the transaction under way.
 
-use jiff::Timestamp;
 use rusqlite::{Connection, params};
 use uuid::Uuid;
 
 use crate::store::rows::{RowReader as _, tenant};
-use crate::store::{RECEIPT_LIFETIME, Receipt, Session, StoreError};
+use crate::store::{Clock, RECEIPT_LIFETIME, Receipt, Session, StoreError};
 
-use super::columns::{execute, first, nanoseconds_ago, to_integer, to_nanoseconds};
+use super::columns::{clamped_nanoseconds, execute, first, to_integer, to_nanoseconds};
 use super::fault::Fault;
 
 /// Refuses a receipt whose key is in use.
-pub(super) fn check_key(database: &Connection, receipt: Option<&Receipt>) -> Result<(), Fault> {
+pub(super) fn check_key(database: &Connection, receipt: Option<&Receipt>, clock: Clock) -> Result<(), Fault> {
     let Some(receipt) = receipt else { return Ok(()) };
     let mut statement = database.prepare_cached("SELECT number FROM receipts WHERE key = ?1 AND at > ?2")?;
-    if statement.exists(params![receipt.request.key, nanoseconds_ago(RECEIPT_LIFETIME)])? {
+    if statement.exists(params![receipt.request.key, clamped_nanoseconds(clock.ago(RECEIPT_LIFETIME))])? {
         return Err(StoreError::KeyTaken.into());
     }
     Ok(())
 }
 
 /// Stores a receipt, in place of an expired one.
-pub(super) fn insert_receipt(database: &Connection, receipt: Option<&Receipt>) -> rusqlite::Result<()> {
+pub(super) fn insert_receipt(database: &Connection, receipt: Option<&Receipt>, clock: Clock) -> rusqlite::Result<()> {
     let Some(Receipt { request, reply }) = receipt else { return Ok(()) };
     let sql = "INSERT OR REPLACE INTO receipts (key, fingerprint, created, sequence, body, at)
                VALUES (?1, ?2, ?3, ?4, ?5, ?6)";
-    let (created, now) = (reply.created.map(|id| id.to_string()), to_nanoseconds(Timestamp::now())?);
+    let (created, now) = (reply.created.map(|id| id.to_string()), to_nanoseconds(clock.now())?);
     let receipt = params![request.key, request.fingerprint, created, to_integer(reply.sequence)?, reply.body, now];
     execute(database, sql, receipt).map(drop)
 }

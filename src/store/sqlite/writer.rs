@@ -13,7 +13,7 @@ use rusqlite::config::DbConfig;
 use tokio::sync::mpsc;
 use tokio::sync::mpsc::error::TryRecvError;
 
-use crate::store::{Changes, Commits, Result, StoreError, batch};
+use crate::store::{Changes, Clock, Commits, Result, StoreError, batch};
 
 use super::change::{Change, Done, Reply, SequenceCache, Transaction};
 use super::fault::{Fault, Stage, is_locked, store_error, worth_splitting};
@@ -33,6 +33,7 @@ pub(super) struct Writer {
     changes: Arc<Changes>,
     cache: SequenceCache,
     commits: Arc<Commits>,
+    clock: Clock,
     /// A number that no session has had.
     next_number: i64,
     /// Forks under way; the first of them is being copied.
@@ -57,6 +58,7 @@ impl Writer {
         files: Arc<OpenFiles>,
         changes: Arc<Changes>,
         commits: Arc<Commits>,
+        clock: Clock,
     ) -> rusqlite::Result<Writer> {
         // Forks that a crash has left incomplete are abandoned.
         database.execute("UPDATE unowned SET forming = 0 WHERE forming = 1", [])?;
@@ -70,6 +72,7 @@ impl Writer {
             changes,
             cache: SequenceCache::new(CACHED),
             commits,
+            clock,
             next_number: highest + 1,
             forks: VecDeque::new(),
             unowned: true,
@@ -111,15 +114,16 @@ impl Writer {
         !self.forks.is_empty() || (self.healthy && self.unowned)
     }
 
-    /// Marks the file as closed, and merges the log into it: with the log, the mark reaches the file.
+    /// Marks the file as closed, and merges the log into it: with the log, the mark reaches the file. Where the mark
+    /// cannot be written, as on a full disk, the log stays: without it, a file that is marked as in use is refused. It
+    /// stays too beside a file that another has taken the place of, whose log it may be.
     fn close(&self) -> rusqlite::Result<()> {
-        if self.files.check().is_err() {
-            // What SQLite would remove with its last connection may belong to another database by now.
+        let marked = self.files.check().and_then(|()| schema::mark(&self.database, APPLICATION));
+        if marked.is_err() {
             self.database.set_db_config(DbConfig::SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, true)?;
+            return marked;
         }
-        let marked = schema::mark(&self.database, APPLICATION);
-        self.database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))?;
-        marked
+        self.database.query_row("PRAGMA wal_checkpoint(TRUNCATE)", [], |_| Ok(()))
     }
 
     /// Makes changes durable together, then answers; or, where that fails, each alone.
@@ -144,11 +148,15 @@ impl Writer {
     }
 
     fn attempt(&mut self, batch: &[Change]) -> Result<Vec<Result<Done>>, Failure> {
-        let (mut number, begin) = (self.next_number, Instant::now());
-        let outcomes = self.transaction(|database, cache| {
+        let (mut number, begin, clock) = (self.next_number, Instant::now(), self.clock);
+        let changes = Arc::clone(&self.changes);
+        let touched = || batch.iter().flat_map(|request| &request.touched);
+        touched().for_each(|id| changes.begin(*id));
+        let is_one_statement = matches!(batch, [only] if only.is_one_statement());
+        let outcomes = self.transaction(is_one_statement, |database, cache| {
             let mut outcomes = Vec::with_capacity(batch.len());
             for request in batch {
-                outcomes.push(match request.make(&mut Transaction { database, cache, number }) {
+                outcomes.push(match request.make(&mut Transaction { database, cache, number, clock }) {
                     Ok(done) => Ok(done),
                     Err(Fault::Refused(error)) => Err(error),
                     Err(Fault::Sqlite(error)) => return Err(error),
@@ -156,7 +164,9 @@ impl Writer {
                 number += 1;
             }
             Ok(outcomes)
-        })?;
+        });
+        touched().for_each(|id| changes.end(*id));
+        let outcomes = outcomes?;
         self.next_number = number;
         self.commits.committed(batch.len(), begin.elapsed());
         Ok(outcomes)
@@ -172,25 +182,23 @@ impl Writer {
             }
             Ok(Done::Copying(fork, copying)) => return self.forks.push_back((fork, copying, request)),
         };
-        // The reply goes first: its client waits longer than the listeners have.
         answer(request.reply, Ok(count));
-        request.touched.iter().for_each(|id| self.changes.wake(*id));
     }
 
     /// Does a part of that work, if there is any; returns whether there is more.
     pub(super) fn background_step(&mut self) -> bool {
         if let Some((fork, copying, request)) = self.forks.pop_front() {
-            let (mut proceeded, receipt) = (copying, request.receipt.as_ref());
+            let (mut proceeded, receipt, clock) = (copying, request.receipt.as_ref(), self.clock);
             let proceed = |database: &Connection, proceeded: &mut Copying| {
-                check_key(database, receipt)?;
+                check_key(database, receipt, clock)?;
                 let complete = fork.proceed(database, proceeded)?;
                 if complete {
-                    insert_receipt(database, receipt)?;
+                    insert_receipt(database, receipt, clock)?;
                 }
                 Ok(complete)
             };
             // A refusal has written a part of the copy and nothing else, and that part is removed later.
-            let step = self.transaction(|database, _| match proceed(database, &mut proceeded) {
+            let step = self.transaction(false, |database, _| match proceed(database, &mut proceeded) {
                 Ok(complete) => Ok(Ok(complete)),
                 Err(Fault::Refused(error)) => copying.abandon(database).map(|()| Err(error)),
                 Err(Fault::Sqlite(error)) => Err(error),
@@ -203,12 +211,12 @@ impl Writer {
                     answer(request.reply, Err(error));
                 }
                 Err(Failure { error, stage }) => {
-                    self.unowned |= self.transaction(|database, _| copying.abandon(database)).is_ok();
+                    self.unowned |= self.transaction(false, |database, _| copying.abandon(database)).is_ok();
                     answer(request.reply, Err(store_error(&error, stage)));
                 }
             }
         } else if self.unowned && self.healthy {
-            match self.transaction(|database, _| fork::remove_unowned(database)) {
+            match self.transaction(false, |database, _| fork::remove_unowned(database)) {
                 Ok(more) => self.unowned = more,
                 Err(Failure { error, .. }) => tracing::warn!(%error, "deleted moves could not be removed for now"),
             }
@@ -216,25 +224,32 @@ impl Writer {
         self.has_background()
     }
 
-    /// Runs a transaction to its durable commit, or rolls it back.
+    /// Runs a transaction to its durable commit, or rolls it back. One statement that writes is a transaction of its
+    /// own.
     fn transaction<T>(
         &mut self,
+        is_one_statement: bool,
         work: impl FnOnce(&Connection, &mut SequenceCache) -> rusqlite::Result<T>,
     ) -> Result<T, Failure> {
-        let begun = self.files.check().and_then(|()| self.run_statement("BEGIN IMMEDIATE"));
-        let done = begun.and_then(|()| work(&self.database, &mut self.cache));
+        let database = &self.database;
+        let around = |statement| if is_one_statement { Ok(()) } else { run_statement(database, statement) };
+        let begun = self.files.check().and_then(|()| around("BEGIN IMMEDIATE"));
+        let done = begun.and_then(|()| work(database, &mut self.cache));
         let outcome = match done {
-            Ok(value) => {
-                self.run_statement("COMMIT").map(|()| value).map_err(|error| Failure { error, stage: Stage::Commit })
-            }
-            Err(error) => Err(Failure { error, stage: Stage::Before }),
+            // Before it is acknowledged: a file that has been overwritten since is read by the next start.
+            Ok(value) => around("COMMIT")
+                .and_then(|()| self.files.check_content())
+                .map(|()| value)
+                .map_err(|error| Failure { error, stage: Stage::Commit }),
+            // Its commit is a part of the statement.
+            Err(error) => Err(Failure { error, stage: if is_one_statement { Stage::Commit } else { Stage::Before } }),
         };
         self.record_health(outcome.as_ref().err().map(|failure| &failure.error));
         outcome.inspect_err(|_| {
             self.cache.clear();
             // Some failures end the transaction by themselves.
             if !self.database.is_autocommit()
-                && let Err(error) = self.run_statement("ROLLBACK")
+                && let Err(error) = run_statement(&self.database, "ROLLBACK")
             {
                 tracing::error!(%error, "a transaction could not be rolled back");
             }
@@ -262,10 +277,10 @@ impl Writer {
             }
         }
     }
+}
 
-    fn run_statement(&self, sql: &str) -> rusqlite::Result<()> {
-        self.database.prepare_cached(sql)?.execute([]).map(drop)
-    }
+fn run_statement(database: &Connection, sql: &str) -> rusqlite::Result<()> {
+    database.prepare_cached(sql)?.execute([]).map(drop)
 }
 
 fn answer(reply: Reply, outcome: Result<u64>) {
