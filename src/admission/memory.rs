@@ -249,6 +249,14 @@ impl Reservation {
         reserved.bytes = reserved.bytes.min(bytes);
     }
 
+    /// Holds what another one holds, in place of what it had: to take a second place beside the first would have
+    /// requests wait for each other.
+    pub fn take_over(&mut self, other: &Reservation) {
+        let mut held = other.0.as_ref().map(|other| std::mem::take(&mut *other.lock())).unwrap_or_default();
+        // What it had is given back after the lock.
+        std::mem::swap(&mut *self.0.get_or_insert_default().lock(), &mut held);
+    }
+
     fn set(&mut self, bytes: usize, place: Option<Place>) {
         let mut reserved = self.0.get_or_insert_default().lock();
         reserved.bytes = bytes;

@@ -79,7 +79,10 @@ async fn a_reservation_becomes_smaller_when_there_is_room_and_its_clones_with_it
     drop(all);
     pool.resize(&mut same, LARGEST_BODY).await.unwrap();
     assert_eq!((large.class(), large.bytes()), (Some(Class::Medium), LARGEST_BODY));
-    pool.resize(&mut large, FREE).await.unwrap();
+    let mut other = pool.reserve(FREE + 1).await.unwrap();
+    other.take_over(&large);
+    assert_eq!((large.class(), other.class(), pool.taken().bytes), (None, Some(Class::Medium), LARGEST_BODY));
+    pool.resize(&mut other, FREE).await.unwrap();
     assert_eq!((same.class(), pool.taken().bytes), (None, 0));
 }
 

@@ -135,8 +135,8 @@ pub async fn get_definition(
     _: CheckedQuery<()>,
 ) -> Result<Response, Problem> {
     let (body, memory) = app.sessions.definition(id).await?;
-    // What it took for the work is what its reply takes, which holds it from now on.
-    context.reserve(memory.bytes()).await?;
+    // The reply holds it from now on.
+    context.admission.memory.clone().take_over(&memory);
     Ok(reply::json(body))
 }
 
