@@ -84,7 +84,7 @@ async fn limits_take_any_number_and_few_open_files_leave_connections() {
     let process = Process::start_by(&few, "memory:").await;
     let address = process.base.trim_start_matches("http://").to_owned();
     let mut open = Vec::new();
-    for _ in 0..32 {
+    for _ in 0..16 {
         open.push(TcpStream::connect(&address).await.unwrap());
     }
     // A spare connection would answer for the health alone.
