@@ -69,7 +69,7 @@ async fn no_client_has_more_than_half_of_a_class() {
 #[tokio::test]
 async fn a_reservation_becomes_smaller_when_there_is_room_and_its_clones_with_it() {
     let pool = classes();
-    let mut large = pool.reserve(LARGEST).await.unwrap();
+    let large = pool.reserve(LARGEST).await.unwrap();
     let mut same = large.clone();
     let all: Vec<_> = (0..16).filter_map(|who| client(who).within(|| pool.try_reserve(LARGEST_BODY))).collect();
     assert_eq!(all.len(), 16);
