@@ -7,7 +7,8 @@ import { isLine } from "./line_contact.js";
 
 /** Moves that are drawn of a long history, and moves and points of the loop that the service draws between their
  *  states. */
-const [MAX_HISTORY, MAX_LOOP, MAX_POINTS, MAX_POINTS_OF_A_MOVE] = [1000, 1000, 8000, 32];
+const [MAX_HISTORY, MAX_LOOP, MAX_POINTS] = [1000, 1000, 8000];
+const [MIN_POINTS_OF_A_MOVE, MAX_POINTS_OF_A_MOVE] = [16, 32];
 
 /** Shows a tab of a contact in `main`, until `signal`; `ready` is called when there is something to show. What it
  *  returns opens another tab, and says which query the address of the view has. */
@@ -79,7 +80,8 @@ export async function showContact(main, { id, tab }, signal, ready) {
   // The force is curved during a move. What takes the service too long stays straight.
   const refinePath = latestOnly(async () => {
     if (!history.length) return;
-    const points = Math.max(1, Math.min(MAX_POINTS_OF_A_MOVE, Math.floor(MAX_POINTS / history.length)));
+    const fitting = Math.floor(MAX_POINTS / history.length);
+    const points = Math.max(MIN_POINTS_OF_A_MOVE, Math.min(MAX_POINTS_OF_A_MOVE, fitting));
     const query = `last=${MAX_LOOP}&points_per_move=${points}`;
     const page = await call("GET", `/contacts/${id}/loop?${query}`, undefined, signal);
     const curved = page.sequence.map((sequence, index) => [page.displacement[index], page.force[index], sequence]);

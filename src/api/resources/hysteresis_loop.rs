@@ -9,11 +9,14 @@ use crate::admission::Reservation;
 use crate::sessions::{bytes_of_trace, trace};
 use stickslip_compute::formats::{Column, Table};
 
+/// Points for each move in a picture, at least.
+const DRAWN_POINTS: usize = 32;
+
 parameters! {
     /// How a loop is traced.
     pub struct LoopQuery {
         /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
-        /// states; with more, the moves are repeated in small steps on a copy of the contact.
+        /// states; with more, the moves are repeated in small steps on a copy of the contact. A picture has at least 32.
         points_per_move: usize = count(&limits::LOOP_POINTS), or 1;
         ..formats(&Format::ALL, "")
     }
@@ -35,7 +38,10 @@ pub async fn get_loop(
     CheckedQuery((moves, query)): CheckedQuery<(MovesQuery, LoopQuery)>,
 ) -> Result<Response, Problem> {
     let LoopQuery { points_per_move, format } = query;
-    move_series::reply(app, context, id, &headers, moves, format?, Loop { points_per_move }).await
+    let format = format?;
+    // A straight line between recorded states would not be the loop.
+    let points_per_move = if format.is_plot() { points_per_move.max(DRAWN_POINTS) } else { points_per_move };
+    move_series::reply(app, context, id, &headers, moves, format, Loop { points_per_move }).await
 }
 
 /// Force and displacement along moves.

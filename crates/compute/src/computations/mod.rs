@@ -172,6 +172,14 @@ pub trait Outcome: Borrow<<Self as Outcome>::Reply> + Send + Sized {
     fn picture(&self, _shown: &DisplayOptions) -> Option<Drawing> {
         None
     }
+
+    /// The same for a picture that is computed, until `stop` ends it.
+    ///
+    /// # Errors
+    /// [`Failure`] if the mechanics has no answer, or the work was stopped.
+    fn computed_picture(&self, shown: &DisplayOptions, _stop: &dyn Stop) -> Result<Option<Drawing>, Failure> {
+        Ok(self.picture(shown))
+    }
 }
 
 /// The texts of a computation that users read.
@@ -300,7 +308,8 @@ impl DisplayOptions {
         if self.format == Format::Columns && self.indented {
             return Ok(serde_json::to_vec_pretty(reply).map_err(Unwritable::new));
         }
-        let (picture, table) = (|| outcome.picture(self), || outcome.table(self));
+        let mut drawing = if self.format.is_plot() { outcome.computed_picture(self, stop)? } else { None };
+        let (picture, table) = (|| drawing.take(), || outcome.table(self));
         let go_on = || stop.check().is_ok();
         let written = self.format.write(outcome.length(), reply, picture, table, &go_on);
         if written.is_err() {

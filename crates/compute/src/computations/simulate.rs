@@ -1,5 +1,7 @@
 //! `simulate`: the states and stresses of a contact along a path.
 
+use std::borrow::Borrow;
+
 use stickslip_wire::PlanarReply;
 
 use super::{plane, residual, stress};
@@ -29,7 +31,7 @@ impl Computation for Simulate {
     };
 
     type Request = SimulateRequest;
-    type Outcome = SimulationReply;
+    type Outcome = Simulated;
 
     fn examples() -> Vec<Example> {
         vec![
@@ -106,16 +108,29 @@ impl Computation for Simulate {
         cost::of_simulation(task)
     }
 
-    fn run(task: Simulation, stop: &dyn Stop) -> Result<SimulationReply, Failure> {
-        simulation::simulate_any(&task, stop)
+    fn run(task: Simulation, stop: &dyn Stop) -> Result<Simulated, Failure> {
+        let reply = simulation::simulate_any(&task, stop)?;
+        Ok(Simulated { reply, task })
     }
 }
 
-impl Outcome for SimulationReply {
+/// A reply with what it was asked of, which a loop is drawn by.
+pub struct Simulated {
+    reply: SimulationReply,
+    task: Simulation,
+}
+
+impl Borrow<SimulationReply> for Simulated {
+    fn borrow(&self) -> &SimulationReply {
+        &self.reply
+    }
+}
+
+impl Outcome for Simulated {
     type Reply = SimulationReply;
 
     fn length(&self) -> usize {
-        match self {
+        match &self.reply {
             SimulationReply::Line(reply) => reply.length(),
             SimulationReply::Plane(PlanarReply { steps, stress, .. }) => {
                 let radii = stress.as_ref().map_or(0, |stress| stress.radius.len());
@@ -125,18 +140,29 @@ impl Outcome for SimulationReply {
     }
 
     fn table(&self, shown: &DisplayOptions) -> Option<Table<'_>> {
-        match self {
+        match &self.reply {
             SimulationReply::Line(reply) => reply.table(shown),
             SimulationReply::Plane(reply) => plane::table(reply, part(shown, false, reply.stress.is_some())),
         }
     }
 
     fn picture(&self, shown: &DisplayOptions) -> Option<Drawing> {
-        match self {
+        match &self.reply {
             SimulationReply::Line(reply) => reply.picture(shown),
             SimulationReply::Plane(reply) => {
                 plane::plot(reply, part(shown, false, reply.stress.is_some())).map(Drawing::Plot)
             }
+        }
+    }
+
+    fn computed_picture(&self, shown: &DisplayOptions, stop: &dyn Stop) -> Result<Option<Drawing>, Failure> {
+        match &self.reply {
+            SimulationReply::Line(reply)
+                if reply.steps.len() > 1 && part(shown, reply.residual.is_some(), reply.stress.is_some()) == STEPS =>
+            {
+                Ok(Some(Drawing::Plot(loop_of(simulation::trace_simulation(&self.task, stop)?, &reply.steps))))
+            }
+            _ => Ok(self.picture(shown)),
         }
     }
 }
@@ -185,12 +211,14 @@ impl Outcome for SimulateReply {
                 )
             }
             "stress" => stresses(self.stress.as_ref()?),
-            _ => loop_of(&self.steps),
+            _ => loop_of(Vec::new(), &self.steps),
         };
         Some(Drawing::Plot(plot))
     }
 }
 
+/// The part that is shown if nothing else is asked for.
+const STEPS: &str = "steps";
 /// Which part is shown.
 const SHOW: Choice = Choice {
     name: "show",
@@ -204,7 +232,7 @@ fn part(shown: &DisplayOptions, has_residual: bool, has_stress: bool) -> &'stati
     shown.choice.unwrap_or(match (has_residual, has_stress) {
         (true, _) => "residual",
         (false, true) => "stress",
-        (false, false) => "steps",
+        (false, false) => STEPS,
     })
 }
 
@@ -233,9 +261,10 @@ fn stresses(stress: &Stress) -> Plot {
     Plot::new("Stresses at the end of the path", stress::place_axis(stress.x.is_some()), panels)
 }
 
-fn loop_of(steps: &[State]) -> Plot {
-    let points = || steps.iter().map(|state| (state.displacement, state.force));
-    let curves = vec![Curve::line("", Colour::Blue, points()), Curve::dots("", Colour::Blue, points())];
+/// The curve of a path, and the states at the ends of its moves.
+fn loop_of(curve: Vec<simulation::Point>, steps: &[State]) -> Plot {
+    let ends = steps.iter().map(|state| (state.displacement, state.force));
+    let curves = vec![Curve::line("", Colour::Blue, curve), Curve::dots("", Colour::Blue, ends)];
     let panel = Panel { y: Axis::of("tangential force F", "N"), curves };
     Plot::new("States along the path", Axis::of("displacement U", "m"), vec![panel])
 }

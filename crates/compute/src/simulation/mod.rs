@@ -16,6 +16,7 @@ mod stress_below;
 mod sweep;
 #[cfg(test)]
 mod tests;
+mod trace;
 mod warnings;
 
 pub use plane::{follow_in_plane, simulate_any};
@@ -28,6 +29,7 @@ pub use solver::Solver;
 pub use stated_accuracy::{Timer, accuracy};
 pub use stress_below::subsurface;
 pub use sweep::{Sweep, SweepResult, Worker};
+pub use trace::{Point, trace, trace_simulation};
 pub use warnings::{
     FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, bulk_warning, excess_error, new_warnings, present_warnings, warnings_at,
 };

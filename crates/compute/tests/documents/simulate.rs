@@ -2,8 +2,10 @@
 
 use serde_json::{Value, json};
 
+use stickslip_compute::formats::Format;
+
 use crate::json::{ball, of, with};
-use crate::{assert_refused, post, problem};
+use crate::{assert_refused, post, problem, written};
 
 fn simulation(path: Value) -> Value {
     of(&ball(), &json!({"path": path}))
@@ -39,4 +41,20 @@ fn what_excludes_or_needs_another_member_is_named_at_its_place() {
     let pointers: Vec<&str> = refused.errors.iter().map(|fault| fault.pointer.as_str()).collect();
     let expected = ["/contact/profile/radius", "/contact/friction", "/path/displacement/0", "/path/displacement/2"];
     assert_eq!(pointers, expected);
+}
+
+/// The points of the longest line of a picture.
+fn longest_line(picture: &str) -> usize {
+    let lines = picture.split("<polyline").skip(1);
+    lines.map(|line| line.split("points=\"").nth(1).map_or(0, |points| points.matches(',').count())).max().unwrap_or(0)
+}
+
+#[test]
+fn a_loop_is_drawn_through_points_on_the_way() {
+    for solver in [json!("exact"), json!({"springs": {"count": 200}})] {
+        let mut request = simulation(json!({"displacement": [6e-7, -6e-7, 6e-7]}));
+        request["solver"] = solver;
+        let picture = written("/simulate", Format::Svg, None, &request);
+        assert!(longest_line(&picture) > 60, "{request}");
+    }
 }
