@@ -40,8 +40,8 @@ use middleware::security_headers;
 use request_context::Reception;
 use request_metrics::RequestMetrics;
 use resources::{
-    contacts, cycle, cycles, events, files, history, hysteresis_loop, jobs, meta, metrics, moves, observations, page,
-    residual, stress, subsurface, sweep,
+    contacts, cycle, cycles, events, files, history, hysteresis_loop, jobs, materials, meta, metrics, moves,
+    observations, page, residual, stress, subsurface, sweep,
 };
 
 pub use problem::Problem;
@@ -160,6 +160,7 @@ fn described() -> Routes {
         .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS }, routes!(events::watch_contact))
         .with(Facts::OPEN, routes!(meta::get_openapi))
         .with(Facts::OPEN, routes!(meta::get_problem))
+        .with(Facts::OPEN, routes!(materials::get_materials))
         .with(Facts::OPEN, routes!(meta::check_health))
         .with(Facts::READY, routes!(meta::check_readiness))
         .with(Facts::METRICS, routes!(metrics::metrics))

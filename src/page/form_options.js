@@ -96,17 +96,6 @@ export const COLUMNS = {
   ],
 };
 
-/** Young's modulus in GPa and Poisson's ratio. */
-export const MATERIALS = {
-  Steel: ["210", "0.3"],
-  Aluminium: ["70", "0.34"],
-  Titanium: ["114", "0.34"],
-  Glass: ["64", "0.2"],
-  "Silicon nitride": ["310", "0.27"],
-  PMMA: ["3", "0.38"],
-  Rubber: ["0.005", "0.5"],
-};
-
 export const PRELOADS = {
   normal_force: { label: "Normal force F_N", units: FORCE, unit: "N", value: "10" },
   indentation: { label: "Indentation d", units: LENGTH, unit: "µm", value: "1" },

@@ -1,7 +1,14 @@
 // The parts of the form for the material of the bodies, for a bulk stress, and for the preload.
+import { call } from "./api.js";
 import { el, mapped } from "./dom.js";
 import { Choice, NumberField } from "./form_fields.js";
-import { MATERIALS, MODULUS, PRELOADS, STRESS_PER_FORCE } from "./form_options.js";
+import { MODULUS, PRELOADS, STRESS_PER_FORCE } from "./form_options.js";
+
+/** The known materials, asked for once. */
+let materials;
+const knownMaterials = () => (materials ??= call("GET", "/materials").catch(() => []));
+
+const option = ({ name, source }) => el("option", { value: name, title: source }, name);
 
 function body(form, at, title) {
   const modulus = new NumberField(form, () => `${at}/youngs_modulus`, {
@@ -15,15 +22,17 @@ function body(form, at, title) {
     "select",
     {
       "aria-label": `${title}: a known material`,
-      onchange: ({ target }) => {
-        if (!target.value) return;
-        [modulus.control.value, ratio.control.value] = MATERIALS[target.value];
+      onchange: async ({ target }) => {
+        const found = (await knownMaterials()).find(({ name }) => name === target.value);
+        if (!found) return;
+        modulus.control.value = String(found.youngs_modulus / 1e9);
+        ratio.control.value = String(found.poisson_ratio);
         modulus.choice.value = "9";
       },
     },
     el("option", { value: "" }, "Known material …"),
-    Object.keys(MATERIALS).map((name) => el("option", { value: name }, name)),
   );
+  knownMaterials().then((all) => known.append(...all.map(option)));
   const element = el("fieldset", {}, el("legend", {}, title), known, modulus.element, ratio.element);
   return { element, value: () => ({ youngs_modulus: modulus.value, poisson_ratio: ratio.value }) };
 }

@@ -383,3 +383,24 @@ async fn plots_name_their_quantities_and_are_drawn_of_nothing_too() {
         assert_eq!(server.get(&format!("{virgin}{path}")).await.status(), 200, "{path}");
     }
 }
+
+#[tokio::test]
+async fn a_loop_is_drawn_through_points_on_the_way_between_the_recorded_states() {
+    let (server, contact) = moved().await;
+    let svg = server.get(&format!("{contact}/loop?format=svg")).await.text().await.unwrap();
+    let points = |line: &str| line.split("points=\"").nth(1).map_or(0, |points| points.matches(',').count());
+    let longest = svg.split("<polyline").skip(1).map(points).max().unwrap();
+    assert!(longest > 32, "{longest}");
+    // The table has the recorded states alone, as ever.
+    let recorded = good(server.get(&format!("{contact}/loop")).await).await;
+    assert!(recorded["part"].as_array().unwrap().iter().all(|part| part == &json!(1.0)));
+}
+
+#[tokio::test]
+async fn known_materials_are_a_table_without_a_key() {
+    let server = Server::start().await;
+    let materials = good(server.get("/materials").await).await;
+    let steel = materials.as_array().unwrap().iter().find(|row| row["name"] == "100Cr6 (AISI 52100)").unwrap();
+    assert_eq!(steel["poisson_ratio"], json!(0.3));
+    assert!(steel["source"].is_string() && steel["range"]["youngs_modulus"][0].as_f64().unwrap() > 1.9e11);
+}

@@ -32,6 +32,7 @@ pub mod job;
 pub mod json_value;
 pub mod limits;
 pub mod line_profiles;
+pub mod materials;
 pub mod observation;
 pub mod parse;
 pub mod path;

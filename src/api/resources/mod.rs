@@ -8,6 +8,7 @@ pub mod files;
 pub mod history;
 pub mod hysteresis_loop;
 pub mod jobs;
+pub mod materials;
 pub mod meta;
 pub mod metrics;
 mod move_series;
