@@ -31,6 +31,12 @@ pub fn names() -> Vec<(&'static str, Option<&'static str>)> {
     abouts.map(|about| (about.name, about.route.map(|route| route.path))).collect()
 }
 
+/// The table of known materials as JSON text.
+#[pyfunction]
+pub fn materials() -> &'static str {
+    stickslip_wire::materials::MATERIALS
+}
+
 /// The OpenAPI document.
 #[cfg(all(feature = "server", target_os = "linux"))]
 #[pyfunction]

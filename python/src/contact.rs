@@ -24,11 +24,16 @@ use stickslip_wire::{
 };
 use uuid::Uuid;
 
+use super::history;
 use super::interrupt::interruptible;
 use super::problem::refused;
+use super::trace::Trace;
 
 /// The most pieces that one straight move can add to the slip history, with a margin.
 const PIECES_OF_A_MOVE: usize = 8;
+
+/// A reply, and the contact as it was before moves that are drawn.
+type Followed = (Vec<u8>, Option<mechanics::Contact>);
 
 /// A contact with its history.
 #[pyclass(module = "stickslip._native")]
@@ -37,9 +42,9 @@ pub struct Contact {
     label: Option<String>,
     definition: ContactDefinition,
     setup: SharedSetup,
-    state: mechanics::Contact,
+    pub(super) state: mechanics::Contact,
     /// Every move with its tolerance, and how many there were before each call that made any.
-    made: Vec<(Move, f64)>,
+    pub(super) made: Vec<(Move, f64)>,
     calls: Vec<usize>,
 }
 
@@ -102,14 +107,49 @@ impl Contact {
         json!(self.made.iter().map(|(step, _)| step).collect::<Vec<_>>()).to_string()
     }
 
-    /// Makes a `move`, a `path` or the path of `relax`: the reply of POST /contacts/{id}/….
-    fn advance<'py>(&mut self, py: Python<'py>, kind: &str, body: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+    /// Makes a `move`, a `path` or the path of `relax`: the reply of POST /contacts/{id}/…, and the moves for a picture
+    /// if they are several.
+    fn advance<'py>(
+        &mut self,
+        py: Python<'py>,
+        kind: &str,
+        body: &[u8],
+    ) -> PyResult<(Bound<'py, PyBytes>, Option<Trace>)> {
         let reply = match kind {
             "move" => self.make_move(py, body)?,
             "path" => interruptible(py, |stop| self.follow(&wire::read::<PathRequest>(body)?, stop))?,
             _ => interruptible(py, |stop| self.relax(body, stop))?,
         };
-        Ok(PyBytes::new(py, &reply.map_err(refused)?))
+        let (reply, before) = reply.map_err(refused)?;
+        let trace = before.map(|before| Trace { before, moves: self.steps_from(self.calls.last().copied()) });
+        Ok((PyBytes::new(py, &reply), trace))
+    }
+
+    /// The moves after the move `after` and up to `end`, with their states and the cycles that they closed, as the items
+    /// of GET /contacts/{id}/history without times.
+    fn history<'py>(&self, py: Python<'py>, after: usize, end: usize) -> PyResult<Bound<'py, PyBytes>> {
+        let items = interruptible(py, |stop| history::items(self, after..end, stop))?;
+        Ok(PyBytes::new(py, Value::from(items.map_err(refused)?).to_string().as_bytes()))
+    }
+
+    /// The last closed cycles, as the items of GET /contacts/{id}/cycles.
+    fn cycles<'py>(&self, py: Python<'py>, last: usize) -> PyResult<Bound<'py, PyBytes>> {
+        let items = interruptible(py, |stop| history::cycles(self, last, stop))?;
+        Ok(PyBytes::new(py, Value::from(items.map_err(refused)?).to_string().as_bytes()))
+    }
+
+    /// The points of the loop along the moves after the move `after` and up to `end`, so many for each: as
+    /// GET /contacts/{id}/loop.
+    fn points<'py>(&self, py: Python<'py>, after: usize, end: usize, points: usize) -> PyResult<Bound<'py, PyBytes>> {
+        let page = interruptible(py, |stop| history::points(self, after..end, points, stop))?;
+        Ok(PyBytes::new(py, &json_bytes(&page.map_err(refused)?).map_err(refused)?))
+    }
+
+    /// The moves after the move `after` and up to `end`, for a picture.
+    fn trace(&self, py: Python<'_>, after: usize, end: usize) -> PyResult<Trace> {
+        let before = interruptible(py, |stop| replay(self.state.virgin(), &self.made[..after], stop))?;
+        let moves = self.made[after..end].iter().map(|(step, tolerance)| (step.step(), *tolerance)).collect();
+        Ok(Trace { before: before.map_err(refused)?, moves })
     }
 
     /// The `stress`, `subsurface` stress or steady `cycle` of the present state.
@@ -196,7 +236,7 @@ impl Contact {
     }
 
     /// A single straight move takes microseconds, less than a thread for it would.
-    fn make_move(&mut self, py: Python<'_>, body: &[u8]) -> PyResult<Result<Vec<u8>, Refusal>> {
+    fn make_move(&mut self, py: Python<'_>, body: &[u8]) -> PyResult<Result<Followed, Refusal>> {
         let advance = match wire::read::<MoveRequest>(body) {
             Ok(advance) => advance,
             Err(rejection) => return Ok(Err(rejection.into())),
@@ -215,7 +255,7 @@ impl Contact {
             && self.state.memory_depth() + PIECES_OF_A_MOVE <= wire::limits::MEMORY_DEPTH
     }
 
-    fn follow(&mut self, advance: &Advance, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
+    fn follow(&mut self, advance: &Advance, stop: &dyn Stop) -> Result<Followed, Refusal> {
         let before = (!self.is_straight(advance)).then(|| self.state.clone());
         let (mut states, made) = (Vec::new(), self.made.len());
         let moved = make_moves(&mut self.state, advance, stop, |step, state| {
@@ -236,7 +276,7 @@ impl Contact {
         let (id, sequence, state) = (self.id, self.made.len() as u64, State::from(self.state.state()));
         let shown = |steps: Steps| shown_states(steps, states.into_iter(), state);
         let (stress, accuracy, warnings) = (moved.stress, moved.accuracy, moved.warnings);
-        match (&advance.plan, advance.relax, moved.relaxed) {
+        let reply = match (&advance.plan, advance.relax, moved.relaxed) {
             (_, Some(relax), Some(protocol)) => {
                 json_bytes(&RelaxReply { id, sequence, dry_run: false, steps: relax.steps.map(shown), protocol })
             }
@@ -245,17 +285,24 @@ impl Contact {
                 let (steps, protocol) = (shown(advance.steps), moved.protocol);
                 json_bytes(&PathReply { id, sequence, steps, stress, protocol, accuracy, warnings })
             }
-        }
+        };
+        Ok((reply?, before))
     }
 
-    fn relax(&mut self, body: &[u8], stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
+    /// The moves after the move `first`.
+    fn steps_from(&self, first: Option<usize>) -> Vec<(mechanics::Move, f64)> {
+        let made = first.map_or(&[][..], |first| &self.made[first..]);
+        made.iter().map(|(step, tolerance)| (step.step(), *tolerance)).collect()
+    }
+
+    fn relax(&mut self, body: &[u8], stop: &dyn Stop) -> Result<Followed, Refusal> {
         let relaxation = wire::read::<RelaxRequest>(body)?;
         if !relaxation.dry_run {
             return self.follow(&relaxation.into(), stop);
         }
         let (steps, protocol) = dry_run_relax(self.state.clone(), &relaxation, stop)?;
         let (id, sequence) = (self.id, self.made.len() as u64);
-        json_bytes(&RelaxReply { id, sequence, dry_run: true, steps, protocol })
+        Ok((json_bytes(&RelaxReply { id, sequence, dry_run: true, steps, protocol })?, None))
     }
 
     /// The body is that of a stress in a request, with `residual` beside.

@@ -1,8 +1,9 @@
 //! Many contacts of one definition, moved together: the contact law of a program that has its own equations of motion.
 
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde_json::json;
-use stickslip_compute::simulation::{self, present_warnings};
+use stickslip_compute::simulation::{self, Failure, present_warnings};
 use stickslip_compute::{Refusal, Stop};
 use stickslip_mechanics::range::{self, Range};
 use stickslip_mechanics::{Contact, Error, Move, Normal, Tangential};
@@ -10,7 +11,7 @@ use stickslip_wire::{Code, State};
 
 use super::interrupt::interruptible;
 use super::problem::refused;
-use super::stepped::{Numbers, Pair, Shares, Stepped, pair, rows, setup};
+use super::stepped::{Numbers, Pair, Shares, Stepped, copies, pair, rows, setup};
 
 /// A displacement beyond which the part that still sticks is looked at, over that of gross slip.
 const PROBE: f64 = 1e-12;
@@ -19,67 +20,124 @@ const LEAST_SHARE: usize = 256;
 
 /// Contacts that are stepped together.
 #[pyclass(module = "stickslip._native")]
-pub struct Contacts(Stepped<Contact>);
+pub struct Contacts {
+    contacts: Stepped<Contact>,
+    /// A virgin contact of each definition, and which of them each contact has; none where there is one for all.
+    firsts: Vec<Contact>,
+    kinds: Vec<u32>,
+}
 
 #[pymethods]
 impl Contacts {
-    /// This number of contacts of the JSON text of a definition.
+    /// This number of contacts of the JSON texts of definitions, of which `kinds` has one for each contact unless there
+    /// is one for all; `memory` is what they may take, bytes.
     #[new]
-    fn new(py: Python<'_>, count: usize, body: &[u8], threads: usize) -> PyResult<Contacts> {
-        let first = interruptible(py, |stop| first(body, stop))?.map_err(refused)?;
-        let committed = py.detach(|| vec![first; count]);
+    fn new(
+        py: Python<'_>,
+        count: usize,
+        memory: usize,
+        bodies: Vec<Vec<u8>>,
+        kinds: Vec<u32>,
+        threads: usize,
+    ) -> PyResult<Contacts> {
+        let firsts =
+            interruptible(py, |stop| bodies.iter().map(|body| first(body, stop)).collect::<Result<Vec<_>, _>>())?;
+        let firsts = firsts.map_err(refused)?;
+        let kind_of = |index: usize| kinds.get(index).map_or(0, |kind| *kind as usize);
+        let committed = py.detach(|| copies(&firsts, count, kind_of, memory)).map_err(refused)?;
         let shares = Shares { threads, least: LEAST_SHARE, components: 1 };
-        Ok(Contacts(Stepped { committed, trial: Vec::new(), shares }))
+        Ok(Contacts { contacts: Stepped { committed, trial: Vec::new(), shares }, firsts, kinds })
     }
 
     fn __len__(&self) -> usize {
-        self.0.committed.len()
+        self.contacts.committed.len()
     }
 
-    /// Moves every contact straight to its indentation and displacement, m; returns normal and tangential forces, N.
+    /// A copy of the contacts of these numbers, without a trial.
+    fn take(&self, py: Python<'_>, indices: Vec<usize>) -> Contacts {
+        py.detach(|| {
+            let committed = indices.iter().map(|index| self.contacts.committed[*index].clone()).collect();
+            let kinds = indices.iter().filter_map(|index| self.kinds.get(*index).copied()).collect();
+            let contacts = Stepped { committed, trial: Vec::new(), shares: self.contacts.shares };
+            Contacts { contacts, firsts: self.firsts.clone(), kinds }
+        })
+    }
+
+    /// The committed states, one after the other, each behind its length in bytes.
+    fn pack<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        let packed = py.detach(|| {
+            let mut all = Vec::new();
+            for contact in &self.contacts.committed {
+                let state = contact.pack();
+                all.extend_from_slice(&(state.len() as u64).to_le_bytes());
+                all.extend_from_slice(&state);
+            }
+            all
+        });
+        PyBytes::new(py, &packed)
+    }
+
+    /// Makes the states that `pack` wrote the committed ones.
+    fn unpack(&mut self, py: Python<'_>, bytes: &[u8]) -> PyResult<()> {
+        let unpacked = py.detach(|| self.unpacked(bytes));
+        let detail = "these bytes are not the states of such contacts by this version of the package";
+        self.contacts.committed = unpacked.ok_or_else(|| refused(Refusal::new(Code::InvalidInput, detail)))?;
+        self.contacts.trial.clear();
+        Ok(())
+    }
+
+    /// Moves every contact straight to its indentation, m, or to that of its normal force, N, and to its displacement,
+    /// m; returns normal and tangential forces, N.
     fn step<'py>(
         &mut self,
         py: Python<'py>,
-        indentation: Numbers<'_>,
+        normal: Numbers<'_>,
+        by_force: bool,
         displacement: Numbers<'_>,
     ) -> PyResult<Pair<'py>> {
-        let targets = self.targets(&indentation, &displacement).map_err(refused)?;
-        self.0.step(py, &targets, move_share)
+        let targets = self.targets(&normal, by_force, &displacement).map_err(refused)?;
+        self.contacts.step(py, &targets, move_share)
     }
 
     /// The forces that such a step would lead to, from the committed states; it is kept until `commit` or `revert`.
     fn trial<'py>(
         &mut self,
         py: Python<'py>,
-        indentation: Numbers<'_>,
+        normal: Numbers<'_>,
+        by_force: bool,
         displacement: Numbers<'_>,
     ) -> PyResult<Pair<'py>> {
-        let targets = self.targets(&indentation, &displacement).map_err(refused)?;
-        self.0.trial(py, &targets, move_share)
+        let targets = self.targets(&normal, by_force, &displacement).map_err(refused)?;
+        self.contacts.trial(py, &targets, move_share)
     }
 
     /// Makes the states of the last trial the committed ones; returns whether there was a trial.
     fn commit(&mut self) -> bool {
-        self.0.commit()
+        self.contacts.commit()
     }
 
     /// Discards the last trial.
     fn revert(&mut self) {
-        self.0.trial.clear();
+        self.contacts.trial.clear();
     }
 
     /// Normal and tangential forces, N, of the committed states.
     fn forces<'py>(&self, py: Python<'py>) -> Pair<'py> {
         pair(
             py,
-            self.0.committed.iter().map(|contact| (contact.normal_force(), contact.force())).collect::<(_, _)>().into(),
+            self.contacts
+                .committed
+                .iter()
+                .map(|contact| (contact.normal_force(), contact.force()))
+                .collect::<(_, _)>()
+                .into(),
         )
     }
 
     /// Normal stiffness, and tangential stiffness of a displacement that goes on upwards or downwards, N/m, of the last
     /// trial or else of the committed states.
     fn stiffness<'py>(&self, py: Python<'py>, upwards: bool) -> PyResult<Pair<'py>> {
-        let contacts = if self.0.trial.is_empty() { &self.0.committed } else { &self.0.trial };
+        let contacts = if self.contacts.trial.is_empty() { &self.contacts.committed } else { &self.contacts.trial };
         let direction = if upwards { 1.0 } else { -1.0 };
         let all = py.detach(|| {
             contacts
@@ -93,38 +151,75 @@ impl Contacts {
 
     /// The committed state of one contact as JSON text.
     fn state(&self, index: usize) -> PyResult<String> {
-        self.0.state(index, |contact| json!(State::from(contact.state())))
+        self.contacts.state(index, |contact| json!(State::from(contact.state())))
     }
 
     /// Bytes of memory that the committed states take.
     fn memory(&self) -> usize {
-        self.0.committed.iter().map(Contact::memory_bytes).sum()
+        self.contacts.committed.iter().map(Contact::memory_bytes).sum()
     }
 
     /// The warnings of their definition, as JSON text.
     fn warnings(&self) -> String {
-        json!(self.0.committed.first().map(present_warnings).unwrap_or_default()).to_string()
+        json!(self.contacts.committed.first().map(present_warnings).unwrap_or_default()).to_string()
     }
 }
 
 impl Contacts {
     /// The targets of a step, all within their ranges: a step that is refused has moved no contact.
-    fn targets(&self, indentation: &Numbers<'_>, displacement: &Numbers<'_>) -> Result<Vec<[f64; 2]>, Refusal> {
-        let count = self.0.committed.len();
-        let indentation = numbers("/indentation", indentation, count, &range::INDENTATION)?;
+    fn targets(
+        &self,
+        normal: &Numbers<'_>,
+        by_force: bool,
+        displacement: &Numbers<'_>,
+    ) -> Result<Vec<[f64; 2]>, Refusal> {
+        let count = self.contacts.committed.len();
+        let (name, range) =
+            if by_force { ("/normal_force", &range::NORMAL_FORCE) } else { ("/indentation", &range::INDENTATION) };
+        let mut depths = numbers(name, normal, count, range)?;
         let displacement = numbers("/displacement", displacement, count, &range::DISPLACEMENT)?;
-        // The radius grows with the indentation, so that the deepest contact alone can be beyond the profile.
-        let deepest = indentation.iter().enumerate().max_by(|one, other| one.1.total_cmp(other.1));
-        if let (Some((index, depth)), Some(contact)) =
-            (deepest.filter(|(_, depth)| **depth > 0.0), self.0.committed.first())
-        {
-            let indenter = contact.indenter();
-            let radius = indenter.check_radius(indenter.radius(*depth));
-            radius.and_then(|radius| range::CONTACT_RADIUS.check(radius)).map_err(|error| {
-                Refusal::at(Code::BeyondProfile, format!("/indentation/{index}"), error.to_string())
-            })?;
+        if by_force {
+            for (index, depth) in depths.iter_mut().enumerate() {
+                let first = &self.firsts[self.kind(index)];
+                *depth =
+                    first.indentation_under(*depth).map_err(|error| Failure::at(format!("{name}/{index}"), error))?;
+            }
         }
-        Ok(indentation.into_iter().zip(displacement).map(|(depth, displacement)| [depth, displacement]).collect())
+        // The radius grows with the indentation, so that of each kind the deepest contact alone can be beyond the
+        // profile.
+        let mut deepest = vec![(0, 0.0); self.firsts.len()];
+        for (index, depth) in depths.iter().enumerate() {
+            let most = &mut deepest[self.kind(index)];
+            if *depth > most.1 {
+                *most = (index, *depth);
+            }
+        }
+        for (first, (index, depth)) in self.firsts.iter().zip(deepest).filter(|(_, (_, depth))| *depth > 0.0) {
+            let indenter = first.indenter();
+            let radius = indenter.check_radius(indenter.radius(depth));
+            radius
+                .and_then(|radius| range::CONTACT_RADIUS.check(radius))
+                .map_err(|error| Refusal::at(Code::BeyondProfile, format!("{name}/{index}"), error.to_string()))?;
+        }
+        Ok(depths.into_iter().zip(displacement).map(|(depth, displacement)| [depth, displacement]).collect())
+    }
+
+    /// The number of the definition of a contact.
+    fn kind(&self, index: usize) -> usize {
+        self.kinds.get(index).map_or(0, |kind| *kind as usize)
+    }
+
+    /// The contacts of packed states.
+    fn unpacked(&self, mut bytes: &[u8]) -> Option<Vec<Contact>> {
+        let count = self.contacts.committed.len();
+        let mut contacts = Vec::with_capacity(count);
+        for index in 0..count {
+            let (length, rest) = bytes.split_first_chunk()?;
+            let (state, rest) = rest.split_at_checked(usize::try_from(u64::from_le_bytes(*length)).ok()?)?;
+            contacts.push(self.firsts[self.kind(index)].unpack(state)?);
+            bytes = rest;
+        }
+        bytes.is_empty().then_some(contacts)
     }
 }
 

@@ -7,6 +7,7 @@ mod command;
 mod compute;
 mod contact;
 mod contacts;
+mod history;
 mod import;
 mod interrupt;
 mod planar_contacts;
@@ -15,6 +16,7 @@ mod problem;
 mod server;
 mod stepped;
 mod sweep;
+mod trace;
 
 /// `stickslip._native`.
 #[pyo3::pymodule]
@@ -26,7 +28,7 @@ mod _native {
     #[pymodule_export]
     use super::compute::openapi;
     #[pymodule_export]
-    use super::compute::{compute, names};
+    use super::compute::{compute, materials, names};
     #[pymodule_export]
     use super::contact::Contact;
     #[pymodule_export]
@@ -42,6 +44,8 @@ mod _native {
     use super::server::Server;
     #[pymodule_export]
     use super::sweep::Sweep;
+    #[pymodule_export]
+    use super::trace::{Trace, trace};
     /// The version of the package.
     #[pymodule_export]
     const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -12,7 +12,7 @@ use stickslip_wire::plane::PlanarState;
 
 use super::interrupt::interruptible;
 use super::problem::refused;
-use super::stepped::{MoveShare, Numbers, Pair, Shares, Stepped, pair, rows, setup};
+use super::stepped::{MoveShare, Numbers, Pair, Shares, Stepped, copies, pair, rows, setup};
 
 /// Contacts that are worth a thread of their own.
 const LEAST_SHARE: usize = 8;
@@ -33,9 +33,16 @@ pub struct PlanarContacts {
 impl PlanarContacts {
     /// This number of contacts of the JSON text of a definition, each of at most this number of rings.
     #[new]
-    fn new(py: Python<'_>, count: usize, body: &[u8], rings: i64, threads: usize) -> PyResult<PlanarContacts> {
+    fn new(
+        py: Python<'_>,
+        count: usize,
+        memory: usize,
+        body: &[u8],
+        rings: i64,
+        threads: usize,
+    ) -> PyResult<PlanarContacts> {
         let law = interruptible(py, |stop| law(body, rings, stop))?.map_err(refused)?;
-        let committed = py.detach(|| vec![law.start(); count]);
+        let committed = py.detach(|| copies(&[law.start()], count, |_| 0, memory)).map_err(refused)?;
         let shares = Shares { threads, least: LEAST_SHARE, components: IN_PLANE };
         Ok(PlanarContacts { law, contacts: Stepped { committed, trial: Vec::new(), shares } })
     }

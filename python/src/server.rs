@@ -27,6 +27,8 @@ pub struct Server {
 }
 
 struct Running {
+    /// The process whose threads it has.
+    process: u32,
     runtime: Runtime,
     stop: oneshot::Sender<()>,
     served: JoinHandle<()>,
@@ -48,13 +50,31 @@ impl Server {
 
     /// Ends it; the second time this does nothing.
     fn stop(&mut self, py: Python<'_>) {
-        let Some(Running { runtime, stop, served }) = self.running.take() else { return };
+        let Some(running) = self.running.take().and_then(Running::own) else { return };
+        let Running { runtime, stop, served, .. } = running;
         py.detach(|| {
             stop.send(()).ok();
             // What does not end in time is ended with the runtime.
             runtime.block_on(async { tokio::time::timeout(SHUTDOWN_TIMEOUT, served).await }).ok();
             runtime.shutdown_timeout(SHUTDOWN_TIMEOUT);
         });
+    }
+}
+
+impl Running {
+    /// It, in its own process. A forked child has a copy without its threads, for which to wait would be without end.
+    fn own(self) -> Option<Running> {
+        if self.process == std::process::id() {
+            return Some(self);
+        }
+        std::mem::forget(self);
+        None
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.running = self.running.take().and_then(Running::own);
     }
 }
 
@@ -78,5 +98,5 @@ fn start(store: &str, port: u16) -> Result<Server, String> {
         // The listener is bound: what fails later is for the clients to see.
         api::serve(listener, app, stop).await;
     });
-    Ok(Server { address, running: Some(Running { runtime, stop, served }) })
+    Ok(Server { address, running: Some(Running { process: std::process::id(), runtime, stop, served }) })
 }

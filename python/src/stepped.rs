@@ -8,13 +8,14 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use serde_json::Value;
 use stickslip_compute::simulation::{self, Anew};
-use stickslip_compute::{Refusal, Stop};
+use stickslip_compute::{Flag, Refusal, Stop};
 use stickslip_mechanics::Error;
 use stickslip_mechanics::range::Range;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::session::Creation;
 use stickslip_wire::{self as wire, Code, CreateRequest};
 
+use super::interrupt::interruptible;
 use super::problem::refused;
 
 /// Two arrays in the order of the contacts.
@@ -41,18 +42,65 @@ pub struct Stepped<C> {
     pub shares: Shares,
 }
 
+/// Shares worth a thread, for each thread, from which on a step can be interrupted: a shorter one ends before anybody
+/// would notice.
+const INTERRUPTIBLE: usize = 80;
+/// Such shares that are moved between two looks whether to go on.
+const AT_ONCE: usize = 4;
+/// The most contacts that are stepped together, whatever the memory.
+const MOST_CONTACTS: usize = 1_000_000_000;
+
+/// So many contacts, each a copy of the first one of its kind.
+///
+/// # Errors
+/// A refusal at `/shape` of more than the memory can hold.
+pub fn copies<C: Clone>(
+    firsts: &[C],
+    count: usize,
+    kind_of: impl Fn(usize) -> usize,
+    memory: usize,
+) -> Result<Vec<C>, Refusal> {
+    let refusal = |bytes: usize| {
+        let detail = format!(
+            "{count} contacts take at least {:.3e} bytes, and there are {:.3e}: allowed are at most {}",
+            bytes as f64,
+            memory as f64,
+            (memory / size_of::<C>().max(1)).min(MOST_CONTACTS)
+        );
+        Refusal::at(Code::InvalidInput, "/shape", detail)
+    };
+    let bytes = size_of::<C>().saturating_mul(count);
+    let mut all = Vec::new();
+    if bytes > memory || count > MOST_CONTACTS || all.try_reserve_exact(count).is_err() {
+        return Err(refusal(bytes));
+    }
+    all.extend((0..count).map(|index| firsts[kind_of(index)].clone()));
+    Ok(all)
+}
+
 impl<C: Clone + Send + Sync> Stepped<C> {
-    /// Moves every contact to its target; returns normal and tangential forces, N.
+    /// Moves every contact to its target; returns normal and tangential forces, N. A step that is refused or
+    /// interrupted has moved no contact.
     pub fn step<'py, T: Sync>(
         &mut self,
         py: Python<'py>,
         targets: &[T],
         move_share: impl MoveShare<C, T>,
     ) -> PyResult<Pair<'py>> {
+        if self.is_long() {
+            let forces = self.trial(py, targets, move_share)?;
+            self.commit();
+            return Ok(forces);
+        }
         self.trial.clear();
         let Stepped { committed, shares, .. } = self;
-        let forces = py.detach(|| shares.move_all(committed, targets, move_share));
+        let forces = py.detach(|| shares.move_all(committed, targets, move_share, &Flag::default()));
         Ok(pair(py, forces.map_err(refused)?))
+    }
+
+    /// Whether a step takes so long that it must be possible to interrupt it.
+    fn is_long(&self) -> bool {
+        self.committed.len() / self.shares.threads.max(1) >= INTERRUPTIBLE * self.shares.least
     }
 
     /// The forces that such a step would lead to, from the committed states; it is kept until `commit` or `revert`.
@@ -64,12 +112,14 @@ impl<C: Clone + Send + Sync> Stepped<C> {
     ) -> PyResult<Pair<'py>> {
         // Taken out, so that a trial that fails half-way leaves no state to commit.
         let mut trial = std::mem::take(&mut self.trial);
+        let is_long = self.is_long();
         let Stepped { committed, shares, .. } = self;
-        let (trial, forces) = py.detach(|| {
+        let work = |stop: &dyn Stop| {
             trial.clone_from(committed);
-            let forces = shares.move_all(&mut trial, targets, move_share);
+            let forces = shares.move_all(&mut trial, targets, move_share, stop);
             (trial, forces)
-        });
+        };
+        let (trial, forces) = if is_long { interruptible(py, work)? } else { py.detach(|| work(&Flag::default())) };
         let forces = forces.map_err(refused)?;
         self.trial = trial;
         Ok(pair(py, forces))
@@ -144,12 +194,25 @@ impl Shares {
         contacts: &mut [C],
         targets: &[T],
         move_share: impl MoveShare<C, T>,
+        stop: &dyn Stop,
     ) -> Result<Columns, Refusal> {
         let Shares { threads, least, components } = self;
         let [mut normal, mut tangential] = [vec![0.0; contacts.len()], vec![0.0; components * contacts.len()]];
         let share = contacts.len().div_ceil(threads.max(1)).max(least);
+        let at_once = AT_ONCE * least;
+        let move_some = |contacts: &mut [C], targets: &[T], normal: &mut [f64], tangential: &mut [f64]| {
+            let forces = normal.chunks_mut(at_once).zip(tangential.chunks_mut(components * at_once));
+            let parts = contacts.chunks_mut(at_once).zip(targets.chunks(at_once)).zip(forces);
+            for ((contacts, targets), (normal, tangential)) in parts {
+                if stop.check().is_err() {
+                    return Ok(());
+                }
+                move_share(contacts, targets, normal, tangential)?;
+            }
+            Ok(())
+        };
         if contacts.len() <= share {
-            move_share(contacts, targets, &mut normal, &mut tangential).map_err(unexpected)?;
+            move_some(contacts, targets, &mut normal, &mut tangential).map_err(unexpected)?;
             return Ok([normal, tangential]);
         }
         let forces = normal.chunks_mut(share).zip(tangential.chunks_mut(components * share));
@@ -157,7 +220,7 @@ impl Shares {
         thread::scope(|scope| {
             let threads: Vec<_> = parts
                 .map(|((contacts, targets), (normal, tangential))| {
-                    scope.spawn(move || move_share(contacts, targets, normal, tangential))
+                    scope.spawn(move || move_some(contacts, targets, normal, tangential))
                 })
                 .collect();
             threads.into_iter().try_for_each(|thread| thread.join().unwrap_or_else(|panic| resume_unwind(panic)))

@@ -16,6 +16,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import functions, profiles
+from . import request_types as types
 from ._native import VERSION as __version__
 from .bodies import RIGID, Body, Moduli
 from .contact import Contact
@@ -35,6 +36,8 @@ from .errors import (
 )
 from .functions import *
 from .instruments import Loop, Scan, read_loop, read_scan
+from .known_materials import MATERIALS as materials
+from .known_materials import KnownMaterial
 from .profiles import *
 from .result import Named, Record, Result, Rows
 
@@ -49,7 +52,7 @@ def connect(url: str, key: str | None = None, *, timeout: float = 90.0, retries:
     Parameters
     ----------
     url : str
-        Where the service is, such as `http://localhost:8080`.
+        Where the service is, such as `http://localhost:8080`, or `localhost:8080`.
     key : str
         A key of access, if the service asks for one.
     timeout : float
@@ -67,6 +70,10 @@ def serve(store: str = "memory:", port: int = 0) -> ServedClient:
     from .server import serve
 
     return serve(store, port)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
 
 
 def __getattr__(name: str) -> Any:
@@ -87,6 +94,7 @@ __all__ = [
     "Engine",
     "Fault",
     "InvalidInput",
+    "KnownMaterial",
     "Local",
     "Loop",
     "Moduli",
@@ -106,9 +114,11 @@ __all__ = [
     "TooMuchWork",
     "__version__",
     "connect",
+    "materials",
     "read_loop",
     "read_scan",
     "serve",
+    "types",
 ]
 __all__ += functions.__all__
 __all__ += profiles.__all__

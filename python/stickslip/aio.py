@@ -1,4 +1,8 @@
-"""The client for asyncio, with the same names; `state`, `summary` and `sequence` of its contacts are awaited too."""
+"""The client for asyncio, with the same names; `state`, `summary` and `sequence` of its contacts are awaited too.
+
+A call that is cancelled after its request was sent may still be carried out by the server: a cancelled `move`, `path`
+or `relax` may leave its moves applied. `sequence()` says how many moves there are.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +21,7 @@ from .documents import Document, Quantity, to_document
 from .engine import NAMES, answer, request_of
 from .errors import warn
 from .events import read_events_of
-from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps
+from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps, whole_url
 from .instruments import Loop, LoopHints, Scan, ScanHints, content_of, hints_of, loop_of, scan_of
 from .optional import needed
 from .requests import definition as definition_of
@@ -85,6 +89,7 @@ class AsyncClient(AsyncComputations):
     """A service at a URL: `async with AsyncClient(url) as api:`. Calls wait on the event loop, without threads."""
 
     def __init__(self, url: str, key: str | None = None, *, timeout: float = 90.0, retries: int = 4):
+        url = whole_url(url)
         headers = {} if key is None else {"authorization": f"Bearer {key}"}
         # Streams are open for long, and each holds a connection.
         limits = httpx.Limits(max_connections=None, max_keepalive_connections=20)

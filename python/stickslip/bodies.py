@@ -7,7 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Final, TypeAlias, Union
 
-from .documents import Document, HasDocument, Quantity, to_document
+import numpy as np
+
+from . import quantities
+from .documents import Document, HasDocument, HasReply, Quantity, to_document
 
 
 class Part:
@@ -33,10 +36,22 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Body(Part):
-    """An elastic body: Young's modulus, Pa, and Poisson's ratio, a pure number."""
+    """An elastic body: Young's modulus, Pa, and Poisson's ratio, a pure number; or the name of a known material."""
 
     youngs_modulus: Quantity
-    poisson_ratio: Quantity
+    poisson_ratio: Quantity | None = None
+
+    def __post_init__(self) -> None:
+        if self.poisson_ratio is None:
+            from .known_materials import constants_of
+
+            if not isinstance(self.youngs_modulus, str):
+                detail = (
+                    "Poisson's ratio is missing: give Body(youngs_modulus, poisson_ratio), or the name of a material"
+                )
+                raise quantities.refused("/poisson_ratio", detail)
+            for name, value in zip(("youngs_modulus", "poisson_ratio"), constants_of(self.youngs_modulus), strict=True):
+                object.__setattr__(self, name, value)
 
 
 #: A rigid body.
@@ -77,12 +92,40 @@ class ContactPart(Part):
         """The JSON document, with units as they were given."""
         given = super().document()
         material = given.pop("bodies")
-        if isinstance(material, Moduli):
-            material = {"effective": material}
-        elif not isinstance(material, Mapping):
-            material = {"bodies": list(material)}
         preload = {name: given.pop(name) for name in self.PRELOADS if name in given}
-        return {"profile": given.pop("profile"), "material": material, "preload": preload} | given
+        if len(preload) != 1:
+            stated = " and ".join(preload) or "none"
+            detail = f"a contact has one load, and {stated} is given: give one of {', '.join(self.PRELOADS)}"
+            raise quantities.refused("/preload", detail)
+        return {"profile": given.pop("profile"), "material": material_of(material), "preload": preload} | given
+
+
+def material_of(given: Any) -> Any:
+    """The document of two bodies, each a body, the name of a material or `RIGID`, or of reduced moduli."""
+    if isinstance(given, Moduli):
+        return {"effective": given}
+    if isinstance(given, HasReply):
+        return given.reply_document()
+    if isinstance(given, Mapping):
+        return given
+    if isinstance(given, Body | str) or not isinstance(given, Sequence):
+        detail = f"two bodies are expected, such as [{given!r}, ss.RIGID], or ss.Moduli(e_star, g_star)"
+        raise quantities.refused("/material/bodies", detail)
+    return {"bodies": [Body(one) if isinstance(one, str) and one != RIGID else one for one in given]}
+
+
+def half(diameter: Any) -> Any:
+    """The radius of a diameter, m."""
+    read = to_document(diameter, "radius", "", "/diameter")
+    return (np.asarray(read, dtype=np.float64) / 2.0).tolist()
+
+
+def radius_of(part: Any, radius: Any, diameter: Any) -> None:
+    """Sets the radius of a shape that is given by one of both."""
+    if (radius is None) == (diameter is None):
+        raise quantities.refused("/radius", f"{type(part).__name__} has either a radius or a diameter")
+    if diameter is not None:
+        object.__setattr__(part, "radius", half(diameter))
 
 
 def elastic_body(definition: Document) -> str:

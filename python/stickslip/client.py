@@ -8,18 +8,20 @@ from collections.abc import Callable, Iterator
 from functools import wraps
 from typing import TYPE_CHECKING, Any, Concatenate, NoReturn, ParamSpec, TypeVar
 
+import numpy as np
+
 from . import results
 from .bodies import Material, Shape
-from .contact import AnyContact, definition
+from .contact import POINTS_OF_A_PICTURE, AnyContact, definition
 from .documents import Document, Quantity, to_document
 from .engine import Engine, path_of
 from .errors import warn
 from .events import read_events
-from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps
+from .exchange import Calls, ContactCalls, Following, Pause, Send, Steps, whole_url
 from .instruments import Loop, LoopHints, Scan, ScanHints, content_of, hints_of, loop_of, scan_of
 from .optional import needed
 from .requests import definition as definition_of
-from .result import parse
+from .result import Curve, Floats, Record, parse
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -29,6 +31,9 @@ if TYPE_CHECKING:
 httpx = needed("httpx", "client")
 P = ParamSpec("P")
 T = TypeVar("T")
+R = TypeVar("R", bound=Record)
+#: Moves of one page of a loop at most.
+MOST_MOVES_OF_A_PAGE = 1000
 #: Names of the module that a client does not have, and what does the same.
 IN_PROCESS_ALONE = {
     "Contacts": "stickslip.Contacts works in process only: on a server make each contact by api.Contact",
@@ -105,6 +110,7 @@ class Client(Engine):
     """
 
     def __init__(self, url: str, key: str | None = None, *, timeout: float = 90.0, retries: int = 4):
+        url = whole_url(url)
         headers = {} if key is None else {"authorization": f"Bearer {key}"}
         self._http = httpx.Client(base_url=url, headers=headers, timeout=timeout)
         self._calls = Calls(url, retries)
@@ -194,6 +200,28 @@ class Client(Engine):
         return self._http.request(step.method, step.path, **step.options)
 
 
+class RemoteCurve:
+    """The moves of a contact on a server between two of their numbers, which are followed when they are drawn."""
+
+    def __init__(self, contact: RemoteContact, id: str, first: int, end: int):  # noqa: A002
+        self._contact, self._id, self._first, self._end = contact, id, first, end
+
+    def points(self) -> tuple[Floats, Floats]:
+        """Displacements, m, and tangential forces, N."""
+        calls = ContactCalls(self._contact._client._calls, self._id)
+        after, found = self._first, []
+        if after > 0:
+            # A page that does not begin at the first move does not have the state before it.
+            found.append(self._contact._run(calls.loop(after=after - 1, limit=1)))
+        while after < self._end:
+            limit = min(MOST_MOVES_OF_A_PAGE, self._end - after)
+            page = calls.loop(after=after, limit=limit, points_per_move=POINTS_OF_A_PICTURE)
+            found.append(self._contact._run(page))
+            after += limit
+        joined = [np.concatenate([getattr(page, name) for page in found]) for name in ("displacement", "force")]
+        return joined[0], joined[1]
+
+
 class RemoteContact(AnyContact):
     """A contact that a server keeps."""
 
@@ -212,13 +240,18 @@ class RemoteContact(AnyContact):
     undo = _sent(ContactCalls.undo)
     delete = _sent(ContactCalls.delete)
     rename = _sent(ContactCalls.rename)
-    history = _sent(ContactCalls.history)
+    _history = _sent(ContactCalls.history)
     moves = _sent(ContactCalls.moves)
-    loop = _sent(ContactCalls.loop)
+    _loop = _sent(ContactCalls.loop)
     cycles = _sent(ContactCalls.cycles)
     observe = _sent(ContactCalls.observe)
     friction = _sent(ContactCalls.friction)
-    _advance = _sent(ContactCalls.advance)
+    _moved = _sent(ContactCalls.advance)
+
+    def _advance(self, kind: str, document: Document) -> tuple[Document, Curve | None]:
+        reply = self._moved(kind, document)
+        dry = bool(reply.get("dry_run"))
+        return reply, None if dry else RemoteCurve(self, self.id, self._calls.made[-1], reply["sequence"])
 
     def copy(self) -> RemoteContact:
         """A copy of the contact on the server, with its history; it evolves independently from here."""
@@ -228,6 +261,30 @@ class RemoteContact(AnyContact):
         copy = RemoteContact(self._client, made["id"], self._definition, calls)
         copy._warned = set(self._warned)
         return copy
+
+    def history(
+        self, *, after: int | None = None, limit: int | None = None, last: int | None = None, cycles: bool | None = None
+    ) -> results.HistoryPage:
+        """A page of its moves: at most `limit` after a number, or the `last` ones; `cycles=False` marks no cycles."""
+        page = self._history(after=after, limit=limit, last=last, cycles=cycles)
+        return self._drawn(page, [item["sequence"] for item in page._document["items"]])
+
+    def loop(
+        self,
+        *,
+        after: int | None = None,
+        limit: int | None = None,
+        last: int | None = None,
+        points_per_move: int | None = None,
+    ) -> results.LoopPage:
+        """A page of its force-displacement loop: as of the history, with so many points for each move."""
+        page = self._loop(after=after, limit=limit, last=last, points_per_move=points_per_move)
+        return self._drawn(page, [number for number in page._document["sequence"] if number > 0])
+
+    def _drawn(self, page: R, numbers: list[int]) -> R:
+        """A page with the curve of its moves."""
+        curve = RemoteCurve(self, self.id, numbers[0] - 1, numbers[-1]) if numbers else None
+        return parse(type(page), page._document, **{**page.context, "curve": curve})
 
     def follow(self, after: int | None = None, *, patience: float = 300.0) -> Iterator[results.StateEvent]:
         """The states of the contact, one for each move after `after`, without end.

@@ -61,14 +61,15 @@ class Computations(ABC):
             Tangential forces, N, one move each.
         falling_amplitude : int | FallingAmplitude | dict
             Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
-            `reversals`.
+            `reversals`. Needs `reversals`; may have `amplitude`.
         equal_peaks : int | EqualPeaks | dict
             Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-            profile of the contact. A number alone is its `reversals`.
+            profile of the contact. A number alone is its `reversals`. Needs `reversals`; may have `cutoff_radius`.
         cycles : CyclicPath | dict
-            Equal cycles about a mean, under a constant load or one that oscillates too.
+            Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
+            `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         ellipse : Ellipse | dict
-            Turns around an ellipse.
+            Turns around an ellipse. Needs `radii`, `turns`; may have `phase`, `steps_per_turn`.
         path : SimulatedPath
             The path, along a line or in the plane.
         solvers : Sequence[Solver]
@@ -77,7 +78,7 @@ class Computations(ABC):
         stress : int | StressRequest | dict
             Where the shear stress at the end of the path is compared; if left out, at 200 radii evenly spaced from the
             centre to the edge. `fields`, if given, must include `shear`; only the shear stress is compared. A number
-            alone is its `points`.
+            alone is its `points`. May have `fields`, `points`, `radii`, `x`.
         tolerance : Quantity
             Tolerance of results that are not exact, relative to μ F_N, a pure number. The reference is computed to a
             sixteenth of this. In the plane it determines the steps and is at least 1e-5; if left out, 1e-3. Default:
@@ -157,26 +158,26 @@ class Computations(ABC):
             Amplitude of the tangential force, N; below μ F_N.
         best_load : int | bool | BestLoadStudy | dict
             Ask for the normal force under which each amplitude does the most friction work; with at most 100
-            amplitudes, not with `normal`. A number alone is its `points`.
+            amplitudes, not with `normal`. A number alone is its `points`. May have `points`.
         frequency_response : FrequencyResponse | dict
             Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
-            `normal`.
+            `normal`. Needs `drive_force`, `mass`; may have `frequencies`.
         harmonics : int
             Ask for the harmonics from the first to this one.
         machine : Quantity | Machine | dict
             A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
-            is its `stiffness`.
+            is its `stiffness`. Needs `stiffness`.
         map : FrettingMap | dict
             Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
-            options only `machine` is allowed. At most 100 000 cycles.
+            options only `machine` is allowed. At most 100 000 cycles. Needs `normal_force`.
         normal : NormalOscillation | dict
-            The normal load oscillates too, about that of the contact.
+            The normal load oscillates too, about that of the contact. May have `indentation`, `normal_force`, `phase`.
         tolerance : Quantity
             Tolerance, a pure number: of cycles with `normal` relative to μ F_N and to the work of that force, of
             `frequency_response` relative to the amplitude. Default: 1e-6.
         work_density : int | WorkDensity | dict
             Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not with `normal`. A number
-            alone is its `points`.
+            alone is its `points`. May have `points`, `radii`, `x`.
 
         Returns
         -------
@@ -243,15 +244,21 @@ class Computations(ABC):
         contact : ContactLike
             The contact as far as it is known. Free quantities start from their values here.
         loops : LoopLike | Sequence[LoopLike]
-            The measured loops, which are fitted together.
+            The measured loops, which are fitted together. A loop is a file or its path, a table, a document, or arrays
+            of displacement and force.
         free : Sequence[FitParameter]
-            The quantities that the fit determines.
+            The quantities that the fit determines. If left out: friction, g_star and force_offset. One of 'friction',
+            'g_star', 'e_star', 'radius', 'machine_compliance', 'displacement_offset', 'force_offset', 'drift'.
         known : bool | KnownValues | dict
-            Values known from elsewhere. One with a standard error takes part in the fit, whether it is free or not.
+            Values known from elsewhere. One with a standard error takes part in the fit, whether it is free or not. A
+            number alone is a value that is held fixed. May have `displacement_offset`, `drift`, `e_star`,
+            `force_offset`, `friction`, `g_star`, `machine_compliance`, `radius`.
         noise : bool | FitNoise | dict
-            The noise of the measured numbers; if left out, it is estimated from the loops.
+            The noise of the measured numbers; if left out, it is estimated from the loops. May have `displacement`,
+            `force`.
         units : bool | FitUnits | dict
-            The units of `displacement` and `force` of the loops; if left out, SI. Everything else is in SI units.
+            The units of `displacement` and `force` of the loops; if left out, SI. Everything else is in SI units. May
+            have `displacement`, `force`.
         start : LoopStart
             How all loops begin.
 
@@ -340,47 +347,58 @@ class Computations(ABC):
         displacement : Quantity | Quantities
             Tangential displacements of the indenter, m, one move each.
         crossland : Weighted | dict
-            √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
+            √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956). Needs `alpha`; may have `life`, `limit`.
+            `life` has `s_n` (`cycles`, `exponent`, `reference`).
         dang_van : Weighted | dict
-            The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
+            The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973). Needs `alpha`; may have `life`,
+            `limit`. `life` has `s_n` (`cycles`, `exponent`, `reference`).
         fatemi_socie : FatemiSocie | dict
             The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
+            Needs `k`, `yield`; may have `life`, `limit`, `youngs_modulus`. `life` has `s_n` (`cycles`, `exponent`,
+            `reference`) or `strain_life` (`ductility`, `ductility_exponent`, `strength`, `strength_exponent`).
         findley : Findley | dict
-            The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
+            The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959). Needs `k`; may
+            have `life`, `limit`. `life` has `s_n` (`cycles`, `exponent`, `reference`).
         friction_work : bool | SurfaceCriterion | dict
-            Friction work per area and cycle at the surface, J/m².
+            Friction work per area and cycle at the surface, J/m². May have `life`, `limit`. `life` has `s_n` (`cycles`,
+            `exponent`, `reference`).
         ruiz : bool | SurfaceCriterion | dict
-            Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
+            Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984). May have `life`, `limit`. `life`
+            has `s_n` (`cycles`, `exponent`, `reference`).
         swt : bool | StrainBased | dict
             The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper
-            1970).
+            1970). May have `life`, `limit`, `youngs_modulus`. `life` has `s_n` (`cycles`, `exponent`, `reference`) or
+            `strain_life` (`ductility`, `ductility_exponent`, `strength`, `strength_exponent`).
         moves : Sequence[Move | dict]
             Moves, one after the other.
         force : Quantities
             Tangential forces, N, one move each.
         falling_amplitude : int | FallingAmplitude | dict
             Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
-            `reversals`.
+            `reversals`. Needs `reversals`; may have `amplitude`.
         equal_peaks : int | EqualPeaks | dict
             Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-            profile of the contact. A number alone is its `reversals`.
+            profile of the contact. A number alone is its `reversals`. Needs `reversals`; may have `cutoff_radius`.
         cycles : CyclicPath | dict
-            Equal cycles about a mean, under a constant load or one that oscillates too.
+            Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
+            `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         body : BodyName
-            The body that is rated.
+            The body that is rated. If left out, the first body that is not rigid. One of 'first', 'second'.
         bulk : Quantity | BulkCycle | dict
             A normal stress of the body along x that varies with the cycle, mean + amplitude · cos(θ + phase), where θ
-            grows from 0 to 360 degrees, by the same amount in each move. A number alone is its `amplitude`.
+            grows from 0 to 360 degrees, by the same amount in each move. A number alone is its `amplitude`. May have
+            `amplitude`, `mean`, `phase`.
         criteria : bool | Criteria | dict
-            The criteria.
+            The criteria. May have `crossland`, `dang_van`, `fatemi_socie`, `findley`, `friction_work`, `ruiz`, `swt`.
         critical_distance : CriticalDistance | dict
-            The distance below the worst point of the surface at which criteria of stress are also evaluated.
+            The distance below the worst point of the surface at which criteria of stress are also evaluated. A length
+            alone is used by the point method. Needs `length`, `method`.
         line : Line | SubsurfaceLine | dict
-            Where: a straight line.
+            Where: a straight line. Needs `count`, `from`, `to`.
         path : Path
             A path of at most 200 moves that ends where it began, at least when it is repeated.
         plane : Plane | SubsurfacePlane | dict
-            Where: a grid in a plane.
+            Where: a grid in a plane. Needs `normal`, `offset`; may have `x`, `y`, `z`.
         points : Sequence[Quantities] | Quantities
             Where: a list of x, y, z, m, with z not negative.
         poisson_ratio : Quantity
@@ -388,7 +406,7 @@ class Computations(ABC):
         stress_paths : Sequence[int]
             Indices of places for which to return the stresses over the cycle.
         surface : Surface | SubsurfaceSurface | dict
-            Where: a grid on the surface.
+            Where: a grid on the surface. Needs `x`, `y`.
         tolerance : Quantity
             Accepted error of a criterion, relative to its largest value, a pure number. In a search the default is
             1e-3. Default: 0.0001.
@@ -477,19 +495,22 @@ class Computations(ABC):
         Parameters
         ----------
         scan : ScanLike
-            The heights, with their places.
+            The heights, with their places. A file or its path, a table, a document, or arrays of x and z, or of x, y
+            and z.
         centre : Centre
             Where the axis of the body is, m; `auto` searches for it.
         level : bool
             Whether to subtract a tilt, if the scan distinguishes it from an off-centre axis. Default: true.
         load : ScanLoad | dict
-            A load, for which the reply then describes the contact.
+            A load, for which the reply then describes the contact. Needs `friction`, `material`, `preload`. `material`
+            has `effective` (`e_star`, `g_star`, `bodies`).
         orientation : ScanOrientation
-            Which way up the scan is; `auto` derives it from the curvature of the surface. Default: auto.
+            Which way up the scan is; `auto` derives it from the curvature of the surface. Default: auto. One of 'auto',
+            'peak_up', 'peak_down'.
         smoothing : Smoothing
             How the smoothness of the profile is chosen; `auto` is generalised cross-validation.
         units : bool | ScanUnits | dict
-            The units of the scan; if left out, metres. Everything else is in SI units.
+            The units of the scan; if left out, metres. Everything else is in SI units. May have `height`, `lateral`.
 
         Returns
         -------
@@ -553,11 +574,12 @@ class Computations(ABC):
         reversals : int
             Number of reversals N; give this or `target`.
         end : ProtocolEnd
-            Where the path ends.
+            Where the path ends. One of 'displacement_zero', 'force_zero', 'free'.
         kind : ProtocolKind
-            The law of the amplitudes.
+            The law of the amplitudes. One of 'linear', 'equal_peaks', 'minimax'.
         robustness : bool | Robustness | dict
-            Ask for the stress that remains if the protocol is not followed exactly.
+            Ask for the stress that remains if the protocol is not followed exactly. May have `amplitude_error`,
+            `friction_error`, `samples`, `seed`.
         start : ProtocolStart
             The state that the reversals begin from; if left out, gross slip at its full amplitude.
         target : Quantity
@@ -700,14 +722,15 @@ class Computations(ABC):
             Tangential forces, N, one move each.
         falling_amplitude : int | FallingAmplitude | dict
             Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
-            `reversals`.
+            `reversals`. Needs `reversals`; may have `amplitude`.
         equal_peaks : int | EqualPeaks | dict
             Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-            profile of the contact. A number alone is its `reversals`.
+            profile of the contact. A number alone is its `reversals`. Needs `reversals`; may have `cutoff_radius`.
         cycles : CyclicPath | dict
-            Equal cycles about a mean, under a constant load or one that oscillates too.
+            Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
+            `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         ellipse : Ellipse | dict
-            Turns around an ellipse.
+            Turns around an ellipse. Needs `radii`, `turns`; may have `phase`, `steps_per_turn`.
         path : SimulatedPath
             The path.
         residual : bool
@@ -715,11 +738,13 @@ class Computations(ABC):
         solver : Solver
             The solver to use; if left out, the cheapest that can serve the request.
         steps : Steps
-            Which states to return.
+            Which states to return. One of 'all', 'last'.
         stress : int | StressRequest | dict
-            Ask for stresses at the end of the path. A number alone is its `points`.
+            Ask for stresses at the end of the path. A number alone is its `points`. May have `fields`, `points`,
+            `radii`, `x`.
         subsurface : Quantity | SubsurfaceRequest | dict
-            Ask for the stress below the surface at the end of the path; only with the exact solver.
+            Ask for the stress below the surface at the end of the path; only with the exact solver. Needs `body`; may
+            have `bulk`, `fields`, `line`, `plane`, `points`, `poisson_ratio`, `surface`.
         tolerance : Quantity
             Tolerance of results that are not exact, relative to μ F_N, a pure number. For rings it is at least 1e-5
             and, if left out, 1e-3. Default: 1e-10.
@@ -857,7 +882,7 @@ class Computations(ABC):
             Amplitude of the tangential displacement, m; below that of gross slip.
         hold : Hold
             The quantity that is held constant: `indentation`. Under a constant normal force the final shape depends on
-            the course of wear, so `normal_force` is refused.
+            the course of wear, so `normal_force` is refused. One of 'indentation', 'normal_force'.
         points : int
             Number of radii of the curves, evenly spaced and with both ends; 200 if left out. Stick radius, contact
             radius and worn radius are added to them.
@@ -1299,7 +1324,7 @@ class OfContact(ABC):
         relative : bool
             Whether the numbers are increments to the present state, instead of the targets themselves.
         stress : int | StressRequest | dict
-            Ask for stresses after the move. A number alone is its `points`.
+            Ask for stresses after the move. A number alone is its `points`. May have `fields`, `points`, `radii`, `x`.
         tolerance : Quantity
             Tolerance of results that are not exact, relative to μ F_N, a pure number. Default: 1e-10.
 
@@ -1359,18 +1384,20 @@ class OfContact(ABC):
             Tangential forces, N, one move each.
         falling_amplitude : int | FallingAmplitude | dict
             Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
-            `reversals`.
+            `reversals`. Needs `reversals`; may have `amplitude`.
         equal_peaks : int | EqualPeaks | dict
             Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-            profile of the contact. A number alone is its `reversals`.
+            profile of the contact. A number alone is its `reversals`. Needs `reversals`; may have `cutoff_radius`.
         cycles : CyclicPath | dict
-            Equal cycles about a mean, under a constant load or one that oscillates too.
+            Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
+            `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         path : Path
             The path.
         steps : Steps
-            Which states to return.
+            Which states to return. One of 'all', 'last'.
         stress : int | StressRequest | dict
-            Ask for stresses at the end of the path. A number alone is its `points`.
+            Ask for stresses at the end of the path. A number alone is its `points`. May have `fields`, `points`,
+            `radii`, `x`.
         tolerance : Quantity
             Tolerance of results that are not exact, relative to μ F_N, a pure number. Default: 1e-10.
 
@@ -1431,11 +1458,11 @@ class OfContact(ABC):
         dry_run : bool
             Whether to compute the path without applying it. The reply of a dry run is not kept for a retry.
         end : ProtocolEnd
-            Where the path ends.
+            Where the path ends. One of 'displacement_zero', 'force_zero', 'free'.
         kind : ProtocolKind
-            The law of the amplitudes.
+            The law of the amplitudes. One of 'linear', 'equal_peaks', 'minimax'.
         steps : Steps
-            Ask for the states along the path.
+            Ask for the states along the path. One of 'all', 'last'.
         target : Quantity
             The largest |τ|/(μ p_max) that may remain, a pure number (over the mean pressure where the largest is
             infinite): the smallest number of reversals that reaches it is found.
@@ -1489,22 +1516,23 @@ class OfContact(ABC):
         Parameters
         ----------
         body : BodyName
-            The body whose stress is asked for.
+            The body whose stress is asked for. If left out, the first body that is not rigid. One of 'first', 'second'.
         bulk : bool | Bulk | dict
             A uniform stress of the body that is added, Pa. In this model it does not shift the stick zone. A number
-            alone is its `amplitude`.
+            alone is its `amplitude`. May have `xx`, `xy`, `xz`, `yy`, `yz`, `zz`.
         fields : Sequence[SubsurfaceField]
-            Which fields are computed; if left out, `tensor`.
+            Which fields are computed; if left out, `tensor`. One of 'tensor', 'principal', 'von_mises', 'max_shear',
+            'hydrostatic'.
         line : Line | SubsurfaceLine | dict
-            A straight line.
+            A straight line. Needs `count`, `from`, `to`.
         plane : Plane | SubsurfacePlane | dict
-            A grid in a plane.
+            A grid in a plane. Needs `normal`, `offset`; may have `x`, `y`, `z`.
         points : Sequence[Quantities] | Quantities
             A list of x, y, z, m, with z not negative.
         poisson_ratio : Quantity
             Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
         surface : Surface | SubsurfaceSurface | dict
-            A grid on the surface.
+            A grid on the surface. Needs `x`, `y`.
 
         Returns
         -------
@@ -1570,26 +1598,26 @@ class OfContact(ABC):
             Amplitude of the tangential force, N; below μ F_N.
         best_load : int | bool | BestLoadStudy | dict
             Ask for the normal force under which each amplitude does the most friction work; with at most 100
-            amplitudes, not with `normal`. A number alone is its `points`.
+            amplitudes, not with `normal`. A number alone is its `points`. May have `points`.
         frequency_response : FrequencyResponse | dict
             Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
-            `normal`.
+            `normal`. Needs `drive_force`, `mass`; may have `frequencies`.
         harmonics : int
             Ask for the harmonics from the first to this one.
         machine : Quantity | Machine | dict
             A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
-            is its `stiffness`.
+            is its `stiffness`. Needs `stiffness`.
         map : FrettingMap | dict
             Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
-            options only `machine` is allowed. At most 100 000 cycles.
+            options only `machine` is allowed. At most 100 000 cycles. Needs `normal_force`.
         normal : NormalOscillation | dict
-            The normal load oscillates too, about that of the contact.
+            The normal load oscillates too, about that of the contact. May have `indentation`, `normal_force`, `phase`.
         tolerance : Quantity
             Tolerance, a pure number: of cycles with `normal` relative to μ F_N and to the work of that force, of
             `frequency_response` relative to the amplitude. Default: 1e-6.
         work_density : int | WorkDensity | dict
             Ask for the friction work per area. Radii times amplitudes are at most 200 000. Not with `normal`. A number
-            alone is its `points`.
+            alone is its `points`. May have `points`, `radii`, `x`.
 
         Returns
         -------
@@ -1669,47 +1697,58 @@ class OfContact(ABC):
         displacement : Quantity | Quantities
             Tangential displacements of the indenter, m, one move each.
         crossland : Weighted | dict
-            √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956).
+            √J2a + α · the largest hydrostatic stress, Pa (Crossland 1956). Needs `alpha`; may have `life`, `limit`.
+            `life` has `s_n` (`cycles`, `exponent`, `reference`).
         dang_van : Weighted | dict
-            The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973).
+            The largest of shear stress + α · hydrostatic stress, Pa (Dang Van 1973). Needs `alpha`; may have `life`,
+            `limit`. `life` has `s_n` (`cycles`, `exponent`, `reference`).
         fatemi_socie : FatemiSocie | dict
             The largest amplitude of the shear strain, raised by the normal stress, a pure number (Fatemi & Socie 1988).
+            Needs `k`, `yield`; may have `life`, `limit`, `youngs_modulus`. `life` has `s_n` (`cycles`, `exponent`,
+            `reference`) or `strain_life` (`ductility`, `ductility_exponent`, `strength`, `strength_exponent`).
         findley : Findley | dict
-            The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959).
+            The largest of shear amplitude + k · largest normal stress on a plane, Pa (Findley 1959). Needs `k`; may
+            have `life`, `limit`. `life` has `s_n` (`cycles`, `exponent`, `reference`).
         friction_work : bool | SurfaceCriterion | dict
-            Friction work per area and cycle at the surface, J/m².
+            Friction work per area and cycle at the surface, J/m². May have `life`, `limit`. `life` has `s_n` (`cycles`,
+            `exponent`, `reference`).
         ruiz : bool | SurfaceCriterion | dict
-            Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984).
+            Shear stress times slip at the surface, N/m (Ruiz, Boddington & Chen 1984). May have `life`, `limit`. `life`
+            has `s_n` (`cycles`, `exponent`, `reference`).
         swt : bool | StrainBased | dict
             The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper
-            1970).
+            1970). May have `life`, `limit`, `youngs_modulus`. `life` has `s_n` (`cycles`, `exponent`, `reference`) or
+            `strain_life` (`ductility`, `ductility_exponent`, `strength`, `strength_exponent`).
         moves : Sequence[Move | dict]
             Moves, one after the other.
         force : Quantities
             Tangential forces, N, one move each.
         falling_amplitude : int | FallingAmplitude | dict
             Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper). A number alone is its
-            `reversals`.
+            `reversals`. Needs `reversals`; may have `amplitude`.
         equal_peaks : int | EqualPeaks | dict
             Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-            profile of the contact. A number alone is its `reversals`.
+            profile of the contact. A number alone is its `reversals`. Needs `reversals`; may have `cutoff_radius`.
         cycles : CyclicPath | dict
-            Equal cycles about a mean, under a constant load or one that oscillates too.
+            Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
+            `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         body : BodyName
-            The body that is rated.
+            The body that is rated. If left out, the first body that is not rigid. One of 'first', 'second'.
         bulk : Quantity | BulkCycle | dict
             A normal stress of the body along x that varies with the cycle, mean + amplitude · cos(θ + phase), where θ
-            grows from 0 to 360 degrees, by the same amount in each move. A number alone is its `amplitude`.
+            grows from 0 to 360 degrees, by the same amount in each move. A number alone is its `amplitude`. May have
+            `amplitude`, `mean`, `phase`.
         criteria : bool | Criteria | dict
-            The criteria.
+            The criteria. May have `crossland`, `dang_van`, `fatemi_socie`, `findley`, `friction_work`, `ruiz`, `swt`.
         critical_distance : CriticalDistance | dict
-            The distance below the worst point of the surface at which criteria of stress are also evaluated.
+            The distance below the worst point of the surface at which criteria of stress are also evaluated. A length
+            alone is used by the point method. Needs `length`, `method`.
         line : Line | SubsurfaceLine | dict
-            Where: a straight line.
+            Where: a straight line. Needs `count`, `from`, `to`.
         path : Path
             A path of at most 200 moves that ends where it began, at least when it is repeated.
         plane : Plane | SubsurfacePlane | dict
-            Where: a grid in a plane.
+            Where: a grid in a plane. Needs `normal`, `offset`; may have `x`, `y`, `z`.
         points : Sequence[Quantities] | Quantities
             Where: a list of x, y, z, m, with z not negative.
         poisson_ratio : Quantity
@@ -1717,7 +1756,7 @@ class OfContact(ABC):
         stress_paths : Sequence[int]
             Indices of places for which to return the stresses over the cycle.
         surface : Surface | SubsurfaceSurface | dict
-            Where: a grid on the surface.
+            Where: a grid on the surface. Needs `x`, `y`.
         tolerance : Quantity
             Accepted error of a criterion, relative to its largest value, a pure number. In a search the default is
             1e-3. Default: 0.0001.
@@ -1794,7 +1833,8 @@ class OfContact(ABC):
             Number of radii, evenly spaced from the centre to the edge of the contact, both included; for a line contact
             from the edge at −a to the edge at a.
         fields : Sequence[Field]
-            Which fields are computed; if left out, `pressure` and `shear`.
+            Which fields are computed; if left out, `pressure` and `shear`. One of 'pressure', 'shear', 'slip',
+            'displacement'.
         radii : Quantities
             Radii in a round contact, m; outside the contact the stresses are zero.
         x : Quantities

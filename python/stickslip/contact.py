@@ -5,27 +5,51 @@ from __future__ import annotations
 import json
 from abc import abstractmethod
 from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import fields
+from difflib import get_close_matches
+from threading import Lock
 from typing import TYPE_CHECKING, Any
 
 from . import requests, results
 from .bodies import HasDefinition, Material, Shape, elastic_body
 from .computations import OfContact
 from .documents import Document, Quantity, to_document
-from .errors import refusal, warn
+from .errors import Conflict, Fault, InvalidInput, refusal, warn
 from .profiles import Definition
 from .result import T, parse
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from typing_extensions import Unpack
 
     from . import _native
     from .request_types import DefinitionMembers
+    from .result import Curve
 
 #: The calls that move a contact, and those that read its present state.
 MOVES = frozenset({"move", "path", "relax"})
+#: The keywords of a contact beside shape, bodies and friction.
+_LOADS = tuple(field.name for field in fields(Definition) if field.name not in ("profile", "bodies", "friction"))
+#: Points for each move in the picture of a loop.
+POINTS_OF_A_PICTURE = 32
+#: Moves of a page of a history.
+PAGE = 100
+#: Points for each move of a loop at most.
+MOST_POINTS = 100
 
 
-class DefinedContact(HasDefinition):
+class Fixed:
+    """An object whose public attributes cannot be set: to assign one would change nothing that is computed."""
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if not name.startswith("_"):
+            kind = type(self).__name__
+            raise AttributeError(f"{name} of a {kind} cannot be set: its definition does not change; make a new {kind}")
+        object.__setattr__(self, name, value)
+
+
+class DefinedContact(Fixed, HasDefinition):
     """The common base of contacts in process, on a server and for asyncio."""
 
     _definition: Document
@@ -33,8 +57,8 @@ class DefinedContact(HasDefinition):
     _warned: set[str]
 
     def definition(self) -> Document:
-        """The JSON document of its definition, at its preload."""
-        return self._definition
+        """The JSON document of its definition, at its preload: a copy."""
+        return deepcopy(self._definition)
 
     def _document(self, name: str, given: Document, parts: dict[str, Document]) -> Document:
         """The document of what is asked for."""
@@ -45,18 +69,18 @@ class DefinedContact(HasDefinition):
         document: Document = to_document(requests.assemble(name, given, parts))
         return document
 
-    def _reply(self, kind: type[T], reply: Document, request: Document) -> T:
+    def _reply(self, kind: type[T], reply: Document, request: Document, curve: Any = None) -> T:
         warn(reply.get("warnings", ()), self._warned)
         definition = self.definition()
-        return parse(kind, reply, definition=definition, **context_of(definition, request))
+        return parse(kind, reply, definition=definition, curve=curve, **context_of(definition, request))
 
 
 class AnyContact(OfContact, DefinedContact):
     """A contact in this process or on a server. All units are SI; numbers may be given with their units."""
 
     @abstractmethod
-    def _advance(self, kind: str, document: Document) -> Document:
-        """Makes a `move`, a `path` or the path of `relax`."""
+    def _advance(self, kind: str, document: Document) -> tuple[Document, Curve | None]:
+        """Makes a `move`, a `path` or the path of `relax`; returns the reply, and the curve of its loop."""
 
     @abstractmethod
     def _read(self, kind: str, document: Document) -> Document:
@@ -109,13 +133,39 @@ class AnyContact(OfContact, DefinedContact):
 
     def _answer_of_contact(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:
         document = self._document(name, given, parts)
+        curve = None
         if name in MOVES:
-            reply = self._advance(name, document)
+            reply, curve = self._advance(name, document)
         elif name == "fretting":
             reply = self._compute(name, document | {"contact": self.definition_now()})
         else:
             reply = self._read(name, document)
-        return self._reply(kind, reply, document)
+        return self._reply(kind, reply, document, curve)
+
+    @abstractmethod
+    def history(
+        self, *, after: int | None = None, limit: int | None = None, last: int | None = None, cycles: bool | None = None
+    ) -> results.HistoryPage:
+        """A page of its moves: at most `limit` after a number, or the `last` ones; `cycles=False` marks no cycles."""
+
+    @abstractmethod
+    def loop(
+        self,
+        *,
+        after: int | None = None,
+        limit: int | None = None,
+        last: int | None = None,
+        points_per_move: int | None = None,
+    ) -> results.LoopPage:
+        """A page of its force-displacement loop: as of the history, with so many points for each move."""
+
+    @abstractmethod
+    def cycles(self, *, last: int | None = None) -> results.CyclePage:
+        """The closed cycles of the history, or the last ones."""
+
+    def plot(self, ax: Axes | None = None, *, last: int = 1000, **options: Any) -> Axes:
+        """The loop of the last moves, in `ax` or in a new figure; returns the axes."""
+        return self.loop(last=last, points_per_move=POINTS_OF_A_PICTURE).plot(ax, **options)
 
     def _repr_html_(self) -> str:
         found = self.describe()
@@ -178,6 +228,7 @@ class Contact(AnyContact):
 
     def _start(self, native: _native.Contact, warned: set[str] | None = None) -> None:
         self._native = native
+        self._in_use = Lock()
         self._definition: Document = json.loads(native.definition())
         self._warned = set() if warned is None else set(warned)
         if warned is None:
@@ -185,25 +236,75 @@ class Contact(AnyContact):
 
     def to_bytes(self) -> bytes:
         """The definition and the moves as bytes, from which `from_bytes` makes the same contact."""
-        return self._native.to_bytes()
+        found: bytes = self._call("to_bytes")
+        return found
 
     def moves(self) -> list[Document]:
         """The moves so far, in the form of a path."""
-        found: list[Document] = json.loads(self._native.moves())
+        found: list[Document] = json.loads(self._call("moves"))
         return found
 
     def describe(self) -> results.SessionReply:
         """Identifier, number of moves, summary of the definition and present state."""
-        return parse(results.SessionReply, json.loads(self._native.describe()))
+        return parse(results.SessionReply, json.loads(self._call("describe")))
 
     def copy(self) -> Contact:
         """A copy of the contact, with its history; it evolves independently from here."""
-        return Contact._of(self._native.copy(), self._warned)
+        return Contact._of(self._call("copy"), self._warned)
 
     def undo(self, calls: int = 1) -> results.State:
         """Takes back the last calls that moved the contact; the moves before them are repeated."""
-        guarded(self._native.undo, calls)
+        self._call("undo", calls)
         return self.state
+
+    def history(
+        self, *, after: int | None = None, limit: int | None = None, last: int | None = None, cycles: bool | None = None
+    ) -> results.HistoryPage:
+        """A page of its moves: at most `limit` after a number, or the `last` ones; `cycles=False` marks no cycles.
+
+        The moves are repeated for it.
+        """
+        first, end, following = self._window(after, limit, last)
+        items = json.loads(self._call("history", first, end))
+        if cycles is False:
+            items = [{name: value for name, value in item.items() if name != "cycle"} for item in items]
+        return parse(results.HistoryPage, {"items": items, "next": following}, curve=self._curve(first, end))
+
+    def loop(
+        self,
+        *,
+        after: int | None = None,
+        limit: int | None = None,
+        last: int | None = None,
+        points_per_move: int | None = None,
+    ) -> results.LoopPage:
+        """A page of its force-displacement loop: as of the history, with so many points for each move."""
+        first, end, _ = self._window(after, limit, last)
+        points = 1 if points_per_move is None else points_per_move
+        if not isinstance(points, int) or not 1 <= points <= MOST_POINTS:
+            raise refused("/points_per_move", f"{points!r} is out of range: allowed is 1 to {MOST_POINTS}")
+        page = json.loads(self._call("points", first, end, points))
+        return parse(results.LoopPage, page, curve=self._curve(first, end))
+
+    def cycles(self, *, last: int | None = None) -> results.CyclePage:
+        """The closed cycles of the history, or the last ones."""
+        return parse(results.CyclePage, {"items": json.loads(self._call("cycles", PAGE if last is None else last))})
+
+    def _window(self, after: int | None, limit: int | None, last: int | None) -> tuple[int, int, int | None]:
+        """The first and the last move of a page, and where the next one begins."""
+        if last is not None and (after is not None or limit is not None):
+            raise refused("/last", "conflicts with `after` and `limit`: leave them out")
+        for name, value in (("after", after), ("limit", limit), ("last", last)):
+            if value is not None and (not isinstance(value, int) or value < 0):
+                raise refused(f"/{name}", f"{value!r} is not a number of moves")
+        made = self.sequence
+        first = max(made - last, 0) if last is not None else min(after or 0, made)
+        end = min(first + (last if last is not None else limit if limit is not None else PAGE), made)
+        return first, end, end if end < made else None
+
+    def _curve(self, first: int, end: int) -> Curve:
+        """The curve of these moves, which is followed when it is drawn."""
+        return self.copy()._call("trace", first, end)  # type: ignore[no-any-return]
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Contact.from_bytes, (self.to_bytes(),)
@@ -217,12 +318,15 @@ class Contact(AnyContact):
     def __repr__(self) -> str:
         return f"Contact({self._definition['profile']['type']}, {self.sequence} moves)"
 
-    def _advance(self, kind: str, document: Document) -> Document:
-        found: Document = json.loads(guarded(self._native.advance, kind, encoded(document)))
-        return found
+    def _call(self, name: str, *arguments: Any) -> Any:
+        return owned(self._in_use, getattr(self._native, name), *arguments)
+
+    def _advance(self, kind: str, document: Document) -> tuple[Document, Curve | None]:
+        reply, curve = self._call("advance", kind, encoded(document))
+        return json.loads(reply), curve
 
     def _read(self, kind: str, document: Document) -> Document:
-        found: Document = json.loads(guarded(self._native.read, kind, encoded(document)))
+        found: Document = json.loads(self._call("read", kind, encoded(document)))
         return found
 
     def _compute(self, name: str, document: Document) -> Document:
@@ -234,6 +338,13 @@ class Contact(AnyContact):
 
 def definition(profile: Shape, material: Material, friction: Quantity, load: Mapping[str, Any]) -> Document:
     """The JSON document of a definition."""
+    unknown = [name for name in load if name not in _LOADS]
+    if unknown:
+        near = get_close_matches(unknown[0], _LOADS, n=1, cutoff=0.3)
+        hint = "normal_force" if unknown[0] in ("load", "force", "preload") else near[0] if near else ""
+        known = f"{', '.join(_LOADS[:-1])} and {_LOADS[-1]}"
+        meant = f": did you mean {hint}? " if hint else ": "
+        raise TypeError(f"a contact has no {unknown[0]!r}{meant}known are {known}")
     document: Document = to_document(Definition(profile, material, friction, **load))
     return document
 
@@ -251,6 +362,22 @@ def guarded(call: Any, *arguments: Any) -> Any:
         return call(*arguments)
     except _native.Problem as problem:
         raise refusal(problem.args[0]) from None
+
+
+def owned(in_use: Lock, call: Any, *arguments: Any) -> Any:
+    """The result of a native call of an object that one thread may use at a time."""
+    if not in_use.acquire(blocking=False):
+        detail = "another thread is using this object: give each thread a copy() of its own, or share it by a lock"
+        raise Conflict("in_use", detail)
+    try:
+        return guarded(call, *arguments)
+    finally:
+        in_use.release()
+
+
+def refused(place: str, detail: str) -> InvalidInput:
+    """The refusal of an argument at its place."""
+    return InvalidInput("invalid_input", detail, (Fault(place, detail),))
 
 
 def native_contact(document: Document) -> _native.Contact:

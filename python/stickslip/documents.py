@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import quantities
-from .errors import Fault, InvalidInput
 
 #: A number in SI units, or one with its unit: "20 um", a quantity of pint.
 Quantity: TypeAlias = Union[float, int, str, "np.floating[Any]", "np.integer[Any]", "HasUnit"]
@@ -40,6 +39,14 @@ class HasArray(Protocol):
 
 
 @runtime_checkable
+class HasReply(Protocol):
+    """A part of a reply, which is taken wherever a request has the same part."""
+
+    def reply_document(self) -> Any:
+        """The JSON of the reply, in SI units: a copy."""
+
+
+@runtime_checkable
 class HasDocument(Protocol):
     """An object that is a part of a request."""
 
@@ -49,55 +56,42 @@ class HasDocument(Protocol):
 
 def to_document(value: Any, name: str = "", parent: str = "", place: str = "") -> Any:
     """The JSON value of a Python value, which is the member `name` of `parent` at the JSON pointer `place`."""
-    if value is None or isinstance(value, bool | int):
-        return value
+    if value is None:
+        return None
+    if isinstance(value, type):
+        raise quantities.refused(place, f"{value.__name__} is a class: make one, such as {value.__name__}(...)")
+    if isinstance(value, bool | int):
+        return _whole(value, name, parent, place)
     if isinstance(value, float):
-        return _finite(value, place)
-    if isinstance(value, str):
-        if name in quantities.TEXTS or parent == "units":
-            return value
-        return quantities.of_text(value, quantities.unit_of(name, parent), place)
+        if not math.isfinite(value):
+            raise quantities.refused(place, f"{value} is not a finite number")
+        return float(value)
     if isinstance(value, Mapping):
-        return {key: to_document(item, key, name, f"{place}/{key}") for key, item in value.items() if item is not None}
+        return {
+            str(key): to_document(item, str(key), name, f"{place}/{key}")
+            for key, item in value.items()
+            if item is not None
+        }
     if isinstance(value, list | tuple | range):
         return [to_document(item, name, parent, f"{place}/{index}") for index, item in enumerate(value)]
+    if isinstance(value, HasReply):
+        return value.reply_document()
     if isinstance(value, HasDocument):
         return to_document(value.document(), name, parent, place)
-    measured = quantities.measured(value)
-    if measured is not None:
-        number = quantities.in_si(*measured, quantities.unit_of(name, parent), place)
-        return to_document(number, "", "", place)
-    if hasattr(value, "__array__"):
-        array = np.asarray(value)
-        if array.dtype.kind not in "biuf":
-            return to_document(array.tolist(), name, parent, place)
-        if array.dtype.kind == "f":
-            _all_finite(array, place)
-        return array.tolist()
-    if hasattr(value, "isoformat"):
+    if hasattr(value, "isoformat") and quantities.unit_of(name, parent) is None:
         return value.isoformat()
-    if hasattr(value, "__float__"):
-        return _finite(float(value), place)
-    detail = f"{value!r} is neither a number nor a text, an array or a part of a request"
-    raise InvalidInput("invalid_input", detail, (Fault(place, detail),))
+    return quantities.read(value, name, parent, place)
+
+
+def _whole(value: int, name: str, parent: str, place: str) -> int:
+    """A whole number, or a flag where no number is expected."""
+    if isinstance(value, bool) and quantities.unit_of(name, parent) is not None:
+        raise quantities.refused(place, f"{value} is a flag, not a number: give {quantities.TAKEN}")
+    return value
 
 
 def floats(value: Any, name: str) -> NDArray[np.float64]:
     """The array of a member in SI units: of numbers, texts, quantities or anything that NumPy makes an array of."""
-    if isinstance(value, np.ndarray) and value.dtype == np.float64:
+    if type(value) is np.ndarray and value.dtype == np.float64:
         return value
     return np.asarray(to_document(value, name, "", f"/{name}"), dtype=np.float64)
-
-
-def _all_finite(array: NDArray[Any], place: str) -> None:
-    """Refuses the first number that is not finite at its place."""
-    if not np.isfinite(array).all():
-        index = np.argwhere(~np.isfinite(array))[0]
-        _finite(float(array[tuple(index)]), place + "".join(f"/{one}" for one in index))
-
-
-def _finite(number: float, place: str) -> float:
-    if not math.isfinite(number):
-        detail = f"{number} is not a finite number"
-        raise InvalidInput("invalid_input", detail, (Fault(place, detail),))
-    return number

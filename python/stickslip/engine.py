@@ -14,7 +14,7 @@ from .computations import Computations
 from .contact import AnyContact, Contact, DefinedContact, context_of, encoded, guarded
 from .documents import Document, Quantity, to_document
 from .errors import NotFound, seen_of, warn
-from .result import T, parse
+from .result import Floats, T, parse
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -73,7 +73,20 @@ def answer(kind: type[T], reply: Document, contact: Any, request: Mapping[str, A
     seen = contact._warned if isinstance(contact, DefinedContact) else seen_of(definition) if definition else set()
     warn(reply.get("warnings", ()), seen)
     found: type[T] = _in_plane(reply) or kind
-    return parse(found, reply, **context_of(definition, request))
+    curve = SimulatedCurve(request) if found is results.SimulateReply else None
+    return parse(found, reply, curve=curve, **context_of(definition, request))
+
+
+class SimulatedCurve:
+    """The path of a simulation, which is followed when it is drawn."""
+
+    def __init__(self, request: Mapping[str, Any]):
+        self._request = {name: value for name, value in request.items() if name not in ("stress", "residual", "steps")}
+
+    def points(self) -> tuple[Floats, Floats]:
+        """Displacements, m, and tangential forces, N."""
+        found: tuple[Floats, Floats] = guarded(_native.trace, encoded(self._request))
+        return found
 
 
 def path_of(name: str) -> str:

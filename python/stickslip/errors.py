@@ -103,12 +103,40 @@ _BY_STATUS: dict[int, type[StickslipError]] = {
 }
 
 
+#: Texts of the JSON reader, in words of the package.
+_IN_WORDS = (
+    (
+        re.compile(r"invalid type: (?:floating point|integer) `([^`]*)`, expected (?:an array|a sequence)\b.*"),
+        r"\1 is one number, and a list of them is expected: give [\1]",
+    ),
+    (
+        re.compile(r"invalid type: string \"(.*?)\", expected (?:an array|a sequence)\b.*"),
+        r'"\1" is one value, and a list is expected: give ["\1"]',
+    ),
+    (re.compile(r"unknown variant `([^`]*)`, expected (?:one of )?(.*)"), r"`\1` is not known here: give \2"),
+    (re.compile(r"unknown field `([^`]*)`, expected (?:one of )?(.*)"), r"`\1` is not known here: give \2"),
+    (re.compile(r"invalid type: (?:map|sequence), expected f64\b.*"), "one number is expected, not several"),
+    (re.compile(r"invalid type: boolean `(\w+)`, expected f64\b.*"), r"\1 is a flag, and a number is expected"),
+    (
+        re.compile(r"invalid type: sequence, expected (?:struct|a map|an object)\b.*"),
+        "an object with named members is expected, not a list",
+    ),
+)
+
+
+def _in_words(detail: str) -> str:
+    """The detail of a fault, without the words of the reader of JSON."""
+    for text, words in _IN_WORDS:
+        detail = text.sub(words, detail)
+    return detail
+
+
 def refusal(document: Mapping[str, Any] | str) -> StickslipError:
     """The exception for a problem document."""
     found: Mapping[str, Any] = json.loads(document) if isinstance(document, str) else document
     code, status = str(found.get("code", "internal")), int(found.get("status", 500))
     kind = _BY_CODE.get(code) or _BY_STATUS.get(status) or (InvalidInput if 400 <= status < 500 else ServerError)
-    faults = [Fault(fault["pointer"], fault["detail"]) for fault in found.get("errors", [])]
+    faults = [Fault(fault["pointer"], _in_words(fault["detail"])) for fault in found.get("errors", [])]
     return kind(code, str(found.get("detail", found.get("title", code))), faults, found)
 
 

@@ -67,6 +67,11 @@ def pause(attempt: int, why: str) -> Pause:
     return Pause(seconds)
 
 
+def whole_url(url: str) -> str:
+    """A URL with its scheme: http where none is given."""
+    return url if "://" in url else f"http://{url}"
+
+
 def advised(response: Any) -> float | None:
     """The time that a server advises to wait, s."""
     advice = response.headers.get("retry-after")
@@ -263,10 +268,11 @@ class ContactCalls:
         return parse(results.SessionReply, (yield from self.calls.json("PATCH", self.path, json=body, idempotent=True)))
 
     def history(
-        self, *, after: int | None = None, limit: int | None = None, last: int | None = None, cycles: int | None = None
+        self, *, after: int | None = None, limit: int | None = None, last: int | None = None, cycles: bool | None = None
     ) -> Steps[results.HistoryPage]:
-        """A page of its moves: at most `limit` after a number, or the `last` ones, or those of the last cycles."""
-        query = _given(after=after, limit=limit, last=last, cycles=cycles)
+        """A page of its moves: at most `limit` after a number, or the `last` ones; `cycles=False` marks no cycles."""
+        marked = None if cycles is None else str(bool(cycles)).lower()
+        query = _given(after=after, limit=limit, last=last, cycles=marked)
         return parse(results.HistoryPage, (yield from self.calls.json("GET", f"{self.path}/history", params=query)))
 
     def moves(self) -> Steps[list[Document]]:

@@ -1,6 +1,6 @@
 """Pictures of results, by Matplotlib, which is imported with the first of them.
 
-Numbers are drawn in SI units, and axes show them with prefixes.
+Numbers are drawn in SI units; an axis shows them in one unit, with the prefix that fits what is drawn.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .optional import needed
+from .shown import scaled
 from .tables_of_results import rows_table
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
 Said = tuple[str, str]
 DISPLACEMENT: Said = ("displacement U", "m")
 FORCE: Said = ("tangential force F", "N")
+BOUND = "friction bound ±μp"
 
 
 def draw(result: Any, ax: Axes | None, **options: Any) -> Axes:
@@ -29,25 +31,35 @@ def draw(result: Any, ax: Axes | None, **options: Any) -> Axes:
         needed("matplotlib", "plot")
         from matplotlib import pyplot
 
-        ax = pyplot.figure().add_subplot()
+        ax = pyplot.figure(layout="constrained").add_subplot()
     painter(ax, result, **options)
     return ax
 
 
-def _axes(ax: Axes, x: Said, y: Said, **options: Any) -> None:
-    """Names the axes, with prefixes at the numbers of those that have a unit."""
-    formatter: Any = needed("matplotlib.ticker", "plot").EngFormatter
-    ax.set(**options)
-    for axis, (name, unit) in ((ax.xaxis, x), (ax.yaxis, y)):
+def _axis(axis: Any, said: Said, limits: tuple[float, float]) -> None:
+    """Names an axis with one unit, in which its numbers are shown."""
+    name, unit = said
+    if unit in ("", "1"):
         axis.set_label_text(name)
-        if unit not in ("", "1"):
-            axis.set_major_formatter(formatter(unit=unit))
+        return
+    ticker = needed("matplotlib.ticker", "plot")
+    scale, symbol = scaled(unit, max(map(abs, limits)))
+    axis.set_label_text(f"{name} ({symbol})")
+    axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value / scale:.6g}"))
+    axis.set_minor_formatter(ticker.NullFormatter())
+
+
+def _axes(ax: Axes, x: Said, y: Said, **options: Any) -> None:
+    """Names the axes."""
+    ax.set(**options)
+    _axis(ax.xaxis, x, ax.get_xlim())
+    _axis(ax.yaxis, y, ax.get_ylim())
 
 
 def _bar(ax: Axes, mapped: Any, said: Said) -> None:
     """The scale of colours."""
-    formatter = needed("matplotlib.ticker", "plot").EngFormatter(unit=said[1])
-    ax.figure.colorbar(mapped, ax=ax, label=said[0], format=formatter)
+    bar = ax.figure.colorbar(mapped, ax=ax)
+    _axis(bar.ax.yaxis, said, mapped.get_clim())
 
 
 def _columns(ax: Axes, result: Any, **options: Any) -> None:
@@ -59,23 +71,25 @@ def _columns(ax: Axes, result: Any, **options: Any) -> None:
     x, first = numbers[:2]
     for name in numbers[1:]:
         if units.get(name) == units.get(first):
-            ax.plot(columns[x], columns[name], label=name, **options)
+            ax.plot(columns[x], columns[name], **({"label": name} | options))
     _axes(ax, (x, units.get(x, "")), ("" if len(numbers) > 2 else first, units.get(first, "")))
     ax.legend()
 
 
 def _stress(ax: Axes, result: Any, **options: Any) -> None:
     friction = result.context.get("friction")
-    place = "radius" if "radius" in result.document else "x"
+    place = "radius" if "radius" in result._document else "x"
     places = getattr(result, place)
     if result.pressure is not None and friction is not None:
         bound = friction * result.pressure
-        ax.plot(places, bound, color="0.6", label="friction bound ±μp")
+        # Of several states in one picture the bound is named once.
+        is_named = any(line.get_label() == BOUND for line in ax.lines)
+        ax.plot(places, bound, color="0.6", label="_" if is_named else BOUND)
         ax.plot(places, -bound, color="0.6")
     for name, label in (("shear", "shear stress τ"), ("slip", "slip"), ("displacement", "displacement")):
         values = getattr(result, name)
         if values is not None:
-            ax.plot(places, values, label=label, **options)
+            ax.plot(places, values, **({"label": label} | options))
             break
     said = ("stress", "Pa") if result.shear is not None else ("", "m")
     _axes(ax, ("radius r" if place == "radius" else "x", "m"), said)
@@ -89,19 +103,31 @@ def _residual(ax: Axes, result: Any, **options: Any) -> None:
     _axes(ax, (place, "m"), ("peak of the shear stress", "Pa"))
 
 
-def _loop(ax: Axes, result: Any, **options: Any) -> None:
-    ax.plot(result.displacement, result.force, ".-", **options)
+def _path(ax: Axes, result: Any, ends: tuple[Any, Any], **options: Any) -> None:
+    """The curve of a path through points on the way, and the ends of its moves.
+
+    Without the curve only the ends are drawn: a straight line between them is not what the contact does.
+    """
+    curve = result.context.get("curve")
+    if curve is not None:
+        (line,) = ax.plot(*curve.points(), **options)
+        options = {name: value for name, value in options.items() if name == "zorder"} | {"color": line.get_color()}
+    ax.plot(*ends, **({"linestyle": "none", "marker": ".", "label": "_ends of moves"} | options))
     _axes(ax, DISPLACEMENT, FORCE)
+
+
+def _loop(ax: Axes, result: Any, **options: Any) -> None:
+    _path(ax, result, (result.displacement, result.force), **options)
 
 
 def _simulation(ax: Axes, result: Any, **options: Any) -> None:
-    _loop(ax, result.steps, **options)
+    _path(ax, result, (result.steps.displacement, result.steps.force), **options)
 
 
-def _history(ax: Axes, result: Any, **options: Any) -> None:
+def _recorded(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = result.table()
-    ax.plot(columns["displacement"], columns["force"], ".-", **options)
-    _axes(ax, DISPLACEMENT, FORCE)
+    is_end = columns.get("part", np.ones(len(columns["force"]))) == 1.0
+    _path(ax, result, (columns["displacement"][is_end], columns["force"][is_end]), **options)
 
 
 def _closed(ax: Axes, result: Any, **options: Any) -> None:
@@ -121,7 +147,7 @@ def _cycle(ax: Axes, result: Any, **options: Any) -> None:
         _bar(ax, mesh, said)
         _axes(ax, ("normal force", "N"), ("displacement amplitude", "m"), xscale="log", yscale="log")
         return
-    ax.plot(amplitude, work, ".-", **options)
+    ax.plot(amplitude, work, **({"linestyle": "none", "marker": "o"} | options))
     _axes(ax, ("displacement amplitude", "m"), said, xscale="log", yscale="log")
 
 
@@ -132,8 +158,15 @@ def _over_places(ax: Axes, places: tuple[Any, Any, Any], values: Any, said: Said
         _axes(ax, (varying[0][0], "m"), said)
         return
     (across, first), (along, second) = varying[:2] if len(varying) > 1 else (("x", places[0]), ("z", places[2]))
-    known = np.isfinite(values)
-    colours = ax.scatter(first[known], second[known], c=values[known], marker="s", **options)
+    columns, rows = np.unique(first), np.unique(second)
+    if len(columns) * len(rows) == len(values) and len(varying) == 2:
+        grid = np.full((len(rows), len(columns)), np.nan)
+        grid[np.searchsorted(rows, second), np.searchsorted(columns, first)] = values
+        # Filled between levels, as the service draws sections: squares of measured points leave stripes.
+        colours: Any = ax.contourf(columns, rows, np.ma.masked_invalid(grid), **({"levels": 20} | options))
+    else:
+        known = np.isfinite(values)
+        colours = ax.scatter(first[known], second[known], c=values[known], **options)
     _bar(ax, colours, said)
     _axes(ax, (across, "m"), (along, "m"))
     if along == "z":
@@ -143,33 +176,43 @@ def _over_places(ax: Axes, places: tuple[Any, Any, Any], values: Any, said: Said
 def _below(ax: Axes, result: Any, field: str | None = None, **options: Any) -> None:
     names = ("von_mises", "max_shear", "hydrostatic", "principal_1", "xx")
     field = field or next(name for name in names if getattr(result, name, None) is not None)
-    _over_places(ax, (result.x, result.y, result.z), getattr(result, field), (field, "Pa"), **options)
+    said = (field.replace("_", " ") + (" stress" if field in ("von_mises", "hydrostatic", "xx") else ""), "Pa")
+    _over_places(ax, (result.x, result.y, result.z), getattr(result, field), said, **options)
 
 
 def _fretting(ax: Axes, result: Any, criterion: str | None = None, **options: Any) -> None:
     criterion = criterion or result.worst
-    columns, units = result.table()
-    if len(result.x) == 0:
-        ax.bar(columns["criterion"], np.nan_to_num(columns["margin"]), **options)
-        ax.set(ylabel="limit over largest value")
+    _, units = result.table()
+    if len(result.x) == 0 or max(map(np.ptp, (result.x, result.y, result.z))) == 0.0:
+        # A search has one place: its picture is how far each criterion is from its limit there.
+        _margins(ax, result, **options)
         return
-    said = (str(criterion), units.get(str(criterion), ""))
+    said = (str(criterion).replace("_", " "), units.get(str(criterion), ""))
     _over_places(ax, (result.x, result.y, result.z), result.ratings[criterion].values, said, **options)
+
+
+def _margins(ax: Axes, result: Any, **options: Any) -> None:
+    margins = {name: rating.margin for name, rating in result.ratings.items() if rating.margin is not None}
+    if not margins:
+        raise TypeError("no criterion has a limit: there is no margin to draw, use to_frame()")
+    ax.bar([name.replace("_", " ") for name in margins], list(margins.values()), **options)
+    ax.axhline(1.0, color="0.6", linestyle="--")
+    ax.set(ylabel="limit over largest value")
 
 
 def _wear(ax: Axes, result: Any, **options: Any) -> None:
     shape = result.shape
     ax.fill_between(shape.radius, shape.before, shape.after, alpha=0.3, label="removed")
     ax.plot(shape.radius, shape.before, color="0.6", label="before")
-    ax.plot(shape.radius, shape.after, label="after", **options)
-    ax.set(xlabel="radius r, m", ylabel="height z, m")
+    ax.plot(shape.radius, shape.after, **({"label": "after"} | options))
+    _axes(ax, ("radius r", "m"), ("height z", "m"))
     ax.legend()
 
 
 def _force_in_plane(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = rows_table(result.steps)
-    ax.plot(columns["force_x"], columns["force_y"], **options)
-    ax.set(xlabel="tangential force along x, N", ylabel="tangential force along y, N", aspect="equal")
+    ax.plot(columns["force_x"], columns["force_y"], **({"linestyle": "none", "marker": "."} | options))
+    _axes(ax, ("tangential force along x", "N"), ("tangential force along y", "N"), aspect="equal")
 
 
 def _sweep(ax: Axes, result: Any, x: str | None = None, y: str | None = None, **options: Any) -> None:
@@ -182,14 +225,14 @@ def _sweep(ax: Axes, result: Any, x: str | None = None, y: str | None = None, **
 def _fit(ax: Axes, result: Any, **options: Any) -> None:
     for loop in result.curve:
         ax.plot(loop.displacement, loop.measured, ".", color="0.6", label="measured")
-        ax.plot(loop.displacement, loop.force, label="fitted", **options)
+        ax.plot(loop.displacement, loop.force, **({"label": "fitted"} | options))
     _axes(ax, DISPLACEMENT, FORCE)
     ax.legend()
 
 
 def _scan(ax: Axes, result: Any, **options: Any) -> None:
     ax.plot(result.raw.radius, result.raw.height, ".", color="0.6", label="measured")
-    ax.plot(result.used.radius, result.used.height, label="fitted", **options)
+    ax.plot(result.used.radius, result.used.height, **({"label": "fitted"} | options))
     _axes(ax, ("radius r", "m"), ("height", "m"))
     ax.legend()
 
@@ -211,8 +254,8 @@ _PAINTERS: dict[str, Callable[..., None]] = {
     "CycleReply": _cycle,
     "FitReply": _fit,
     "FrettingReply": _fretting,
-    "HistoryPage": _history,
-    "LoopPage": _loop,
+    "HistoryPage": _recorded,
+    "LoopPage": _recorded,
     "PathReply": _loop,
     "PlanarReply": _force_in_plane,
     "ProfileFitReply": _scan,

@@ -6,11 +6,11 @@ Written by `tools/generate.py`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, InitVar, dataclass
 from typing import Any, ClassVar
 
 from . import request_types as types
-from .bodies import ContactPart, Material, Part, Shape
+from .bodies import ContactPart, Material, Part, Shape, radius_of
 from .documents import Quantities, Quantity
 
 
@@ -53,7 +53,7 @@ class Cylinder(Profile):
 
     TYPE: ClassVar[str] = "cylinder"
 
-    radius: Quantity
+    radius: Quantity | None = None
     """Radius R, m; for two cylinders 1/R = 1/R₁ + 1/R₂."""
     _: KW_ONLY
     length: Quantity
@@ -63,6 +63,11 @@ class Cylinder(Profile):
     left out, twice the radius. Half-widths must stay below nine tenths of it; stresses, forces and the work of
     closed cycles under a force do not depend on it.
     """
+    diameter: InitVar[Quantity | None] = None
+    """The diameter 2 R, m, in place of the radius."""
+
+    def __post_init__(self, diameter: Quantity | None) -> None:
+        radius_of(self, self.radius, diameter)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -83,8 +88,14 @@ class ExactSphere(Profile):
 
     TYPE: ClassVar[str] = "exact_sphere"
 
-    radius: Quantity
+    radius: Quantity | None = None
     """Radius R, m; the contact radius stays below 0.9 of it."""
+    _: KW_ONLY
+    diameter: InitVar[Quantity | None] = None
+    """The diameter 2 R, m, in place of the radius."""
+
+    def __post_init__(self, diameter: Quantity | None) -> None:
+        radius_of(self, self.radius, diameter)
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,8 +181,14 @@ class Sphere(Profile):
 
     TYPE: ClassVar[str] = "sphere"
 
-    radius: Quantity
+    radius: Quantity | None = None
     """Radius of curvature R of the gap, m; for two spheres 1/R = 1/R₁ + 1/R₂."""
+    _: KW_ONLY
+    diameter: InitVar[Quantity | None] = None
+    """The diameter 2 R, m, in place of the radius."""
+
+    def __post_init__(self, diameter: Quantity | None) -> None:
+        radius_of(self, self.radius, diameter)
 
 
 @dataclass(frozen=True, eq=False)

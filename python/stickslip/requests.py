@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, Union
 
@@ -9,19 +10,23 @@ import numpy as np
 
 from . import quantities
 from .bodies import elastic_body
-from .documents import Document, HasDocument, Quantities
-from .errors import Fault, InvalidInput
+from .documents import Document, HasDocument, HasReply, Quantities, to_document
 from .members import EMPTY, SHORT
-from .tables import as_csv, columns_in_si, is_table
+from .paths import path_of_moves
+from .tables import as_csv, is_table
 
 if TYPE_CHECKING:
     from .instruments import Loop, Scan
     from .tables import NamedTable
 
-#: A measured loop: a file that was read, a document, a table, an array of two rows, or displacements and forces.
-LoopLike: TypeAlias = Union["Loop", Mapping[str, Any], "NamedTable", "Sequence[Quantities]", Quantities]
-#: A scan: a file that was read, a document, a table, or arrays of x and z or x, y and z.
-ScanLike: TypeAlias = Union["Scan", Mapping[str, Any], "NamedTable", "Sequence[Quantities]", Quantities]
+#: A measured loop: a file or its path, a document, a table, an array of two rows, or displacements and forces.
+LoopLike: TypeAlias = Union[
+    "Loop", str, "os.PathLike[str]", Mapping[str, Any], "NamedTable", "Sequence[Quantities]", Quantities
+]
+#: A scan: a file or its path, a document, a table, or arrays of x and z or x, y and z.
+ScanLike: TypeAlias = Union[
+    "Scan", str, "os.PathLike[str]", Mapping[str, Any], "NamedTable", "Sequence[Quantities]", Quantities
+]
 
 
 def assemble(name: str, given: Document, parts: dict[str, Document]) -> Document:
@@ -32,7 +37,8 @@ def assemble(name: str, given: Document, parts: dict[str, Document]) -> Document
     given = {member: _object(member, value) for member, value in given.items() if value is not None}
     for part, values in parts.items():
         chosen = {member: _object(member, value) for member, value in values.items() if value is not None}
-        given[part] = dict(given.get(part, {})) | chosen
+        whole = given.get(part, {})
+        given[part] = (path_of_moves(whole) if part == "path" else dict(whole)) | chosen
     if "contact" in given:
         given["contact"] = definition(given["contact"])
     special = _SPECIAL.get(name.rpartition("/")[2] if name != "/profiles/fit" else name)
@@ -43,44 +49,59 @@ def _object(member: str, value: Any) -> Any:
     """The object that a number alone, or True, stands for."""
     if value is True and member in EMPTY:
         return {}
+    if member == "known" and isinstance(value, Mapping):
+        return {name: {"value": one} if quantities.is_number(one) else one for name, one in value.items()}
+    if member == "critical_distance" and quantities.is_number(value):
+        # The point method of Taylor, the commoner one.
+        return {"length": value, "method": "point"}
     short = SHORT.get(member)
-    is_plain = isinstance(value, int | float | str) and not isinstance(value, bool)
-    is_number = is_plain or hasattr(value, "to_base_units")
-    return {short: value} if short is not None and is_number else value
+    return {short: value} if short is not None and quantities.is_number(value) else value
 
 
 def definition(contact: Any) -> Document:
     """The definition of a contact or of a document, with units as they were given."""
-    if callable(getattr(contact, "definition", None)):
+    if isinstance(contact, type):
+        detail = f"{contact.__name__} is a class: make a contact, such as {contact.__name__}(...)"
+        raise quantities.refused("/contact", detail)
+    if isinstance(contact, HasReply):
+        contact = contact.reply_document()
+    elif callable(getattr(contact, "definition", None)):
         contact = contact.definition()
     elif isinstance(contact, HasDocument):
         contact = contact.document()
+    if not isinstance(contact, Mapping):
+        detail = f"{contact!r} is no contact: give a Contact, a Definition or its document"
+        raise quantities.refused("/contact", detail)
     return dict(contact)
 
 
 def _path(given: Document) -> Document:
-    """A path; a table of it is its moves, with a column for each target."""
+    """A path: of a table, a reply or a document too, and one number for one move."""
     way = given.get("path", {})
-    if is_table(way.get("displacement")):
-        columns = columns_in_si(way.pop("displacement"))
-        moves = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
-        way["moves"] = [{name: value for name, value in move.items() if value == value} for move in moves]
+    displacement = way.get("displacement")
+    if is_table(displacement) or isinstance(displacement, HasReply | Mapping):
+        del way["displacement"]
+        way |= path_of_moves(displacement)
+    for member in ("displacement", "force"):
+        if quantities.is_number(way.get(member)):
+            way[member] = [way[member]]
     return given
+
+
+def _stress(given: Document) -> Document:
+    """Stresses at 200 places unless they are given."""
+    return given if {"points", "radii", "x"} & given.keys() else {"points": 200} | given
 
 
 def _fretting(given: Document) -> Document:
     """Criteria over the cycle of an amplitude, or over a path; of the first elastic body unless it is named."""
     amplitude = given["path"].get("displacement")
-    if amplitude is not None and not is_table(amplitude) and _is_single(amplitude):
+    if quantities.is_number(amplitude):
         given["path"] = {"cycles": {"displacement": amplitude, "count": 1}}
     if isinstance(given.get("bulk"), list | tuple):
         detail = "a bulk stress is its amplitude, or dict(mean=, amplitude=, phase=)"
-        raise _refused("/bulk", detail)
+        raise quantities.refused("/bulk", detail)
     return _path({"body": elastic_body(given.get("contact", {}))} | given)
-
-
-def _is_single(value: Any) -> bool:
-    return isinstance(value, int | float | str) or np.ndim(getattr(value, "magnitude", value)) == 0
 
 
 def _loop_fit(given: Document) -> Document:
@@ -112,6 +133,7 @@ _SPECIAL = {
     "path": _path,
     "/profiles/fit": _profile_fit,
     "simulate": _path,
+    "stress": _stress,
     "sweep": _sweep,
 }
 
@@ -119,8 +141,17 @@ _SPECIAL = {
 def axes(given: Any) -> list[Any]:
     """The axes of a sweep: documents, or values by their pointers."""
     if isinstance(given, Mapping):
-        return [{"pointer": pointer, "values": values} for pointer, values in given.items()]
-    return list(given)
+        given = [{"pointer": pointer, "values": values} for pointer, values in given.items()]
+    return [_axis(axis, f"/axes/{index}") for index, axis in enumerate(given)]
+
+
+def _axis(axis: Any, place: str) -> Any:
+    """An axis whose values have the unit of the number that its pointer names."""
+    if not isinstance(axis, Mapping) or axis.get("values") is None or not isinstance(axis.get("pointer"), str):
+        return axis
+    names = [name for name in axis["pointer"].split("/") if name and not name.isdigit()]
+    name, parent = (names[-1] if names else ""), (names[-2] if len(names) > 1 else "")
+    return {**axis, "values": to_document(axis["values"], name, parent, f"{place}/values")}
 
 
 def outputs(given: Any) -> list[Any]:
@@ -140,25 +171,22 @@ def scan(given: Any, units: Any) -> tuple[Any, Any]:
         from .instruments import read_scan
 
         given = read_scan(as_csv(given))
+    if isinstance(given, str | bytes | os.PathLike):
+        from .instruments import read_scan
+
+        given = read_scan(given)
     if hasattr(given, "scan"):
         return given.scan, units or given.units
     if isinstance(given, Mapping):
         return dict(given), units
-    names = {2: ("x", "z"), 3: ("x", "y", "z")}.get(len(given))
+    names = {2: ("x", "z"), 3: ("x", "y", "z")}.get(len(given) if hasattr(given, "__len__") else 0)
     if names is None:
-        raise _refused("/scan", "arrays of x and z, or of x, y and z, are expected")
+        raise quantities.refused("/scan", "arrays of x and z, or of x, y and z, are expected")
     _only_one_unit(given, units)
-    columns = dict(zip(names, map(_with_gaps, given), strict=True))
-    return {"line" if len(names) == 2 else "points": columns}, units
-
-
-def _with_gaps(column: Any) -> list[float | None]:
-    """Numbers, and None where one is missing."""
-    found = quantities.measured(column)
-    if found is not None:
-        column = quantities.in_si(*found, "m", "/scan")
-    array = np.asarray(column, dtype=np.float64)
-    return [None if value != value else value for value in array.tolist()]
+    kind = "line" if len(names) == 2 else "points"
+    places = [quantities.Reading(name, kind, f"/scan/{kind}/{name}", gaps=True) for name in names]
+    columns = {one.name: one.column(column) for one, column in zip(places, given, strict=True)}
+    return {kind: columns}, units
 
 
 def loops(given: Any, units: Any) -> tuple[list[Any], Any]:
@@ -171,6 +199,10 @@ def loops(given: Any, units: Any) -> tuple[list[Any], Any]:
         from .instruments import read_loop
 
         given = read_loop(as_csv(given))
+    if isinstance(given, str | bytes | os.PathLike):
+        from .instruments import read_loop
+
+        given = read_loop(given)
     if hasattr(given, "loop"):
         return [given.loop], units or given.units
     if not isinstance(given, Mapping) and _is_pair(given):
@@ -179,7 +211,9 @@ def loops(given: Any, units: Any) -> tuple[list[Any], Any]:
         _only_one_unit([given.get("displacement"), given.get("force")], units)
         return [dict(given)], units
     if not isinstance(given, list | tuple):
-        raise _refused("/loops", "a loop is a file that was read, a table, a document, or two arrays of equal length")
+        raise quantities.refused(
+            "/loops", "a loop is a file that was read, a table, a document, or two arrays of equal length"
+        )
     several = [loops(one, units) for one in given]
     named = [unit or None for _, unit in several]
     if any(unit != named[0] for unit in named):
@@ -205,12 +239,8 @@ def _only_one_unit(columns: Any, units: Any) -> None:
     """Refuses columns with units of their own where the request names units too."""
     for column in columns:
         first = column[0] if isinstance(column, list | tuple) and column else None
-        if units and (quantities.measured(column) or isinstance(first, str) or quantities.measured(first)):
-            raise _refused("/units", "the columns have units of their own: leave out `units`")
-
-
-def _refused(pointer: str, detail: str) -> InvalidInput:
-    return InvalidInput("invalid_input", detail, (Fault(pointer, detail),))
+        if units and (quantities.states_unit(column) or isinstance(first, str) or quantities.states_unit(first)):
+            raise quantities.refused("/units", "the columns have units of their own: leave out `units`")
 
 
 def _in_si(loop: Any, units: Any) -> Any:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from html import escape
-from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar, overload
+from copy import deepcopy
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeAlias, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from . import schemas
+from . import members, schemas, shown
 from .optional import needed
 
 if TYPE_CHECKING:
@@ -24,6 +24,26 @@ Texts: TypeAlias = NDArray[np.str_]
 #: The columns of a table, and their units.
 Table: TypeAlias = tuple[dict[str, NDArray[Any]], dict[str, str]]
 T = TypeVar("T", bound="Record")
+#: Fields of a record that is shown within another one, at most.
+MOST_SHOWN = 5
+
+
+class Curve(Protocol):
+    """Moves between states, which are followed when they are drawn."""
+
+    def points(self) -> tuple[Floats, Floats]:
+        """Displacements, m, and tangential forces, N."""
+
+
+class FixedCurve:
+    """A curve that has been followed."""
+
+    def __init__(self, displacement: Floats, force: Floats):
+        self._points = displacement, force
+
+    def points(self) -> tuple[Floats, Floats]:
+        """Displacements, m, and tangential forces, N."""
+        return self._points
 
 
 class Record:
@@ -32,14 +52,19 @@ class Record:
     A field that was not asked for is None.
     """
 
+    _document: dict[str, Any]
+
     def __init__(self, schema: str, document: dict[str, Any], context: Mapping[str, Any] | None = None):
         self.__dict__.update(_schema=schema, _document=document, _context=context or {})
 
     @property
     def document(self) -> dict[str, Any]:
-        """The JSON document that the engine replied with."""
-        found: dict[str, Any] = self.__dict__["_document"]
-        return found
+        """The JSON document that the engine replied with: a copy."""
+        return deepcopy(self._document)
+
+    def reply_document(self) -> dict[str, Any]:
+        """As `document`: a request takes the record where it takes its document."""
+        return self.document
 
     @property
     def context(self) -> Mapping[str, Any]:
@@ -56,17 +81,20 @@ class Record:
     def fields(self) -> list[str]:
         """The names of its fields."""
         known = list(schemas.FIELDS[self.schema])
-        return known + [name for name in self.document if name not in schemas.FIELDS[self.schema]]
+        return known + [name for name in self._document if name not in schemas.FIELDS[self.schema]]
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         member = name.removesuffix("_")
         fields = schemas.FIELDS[self.schema]
-        if member not in fields and member not in self.document:
+        if member not in fields and member not in self._document:
             raise AttributeError(f"{self.schema} has no {name}: it has {', '.join(self.fields())}")
         kind = fields.get(member, ("", None))[0]
-        value = self.__dict__[name] = _read(self.document.get(member), kind, self.context)
+        value = self.__dict__[name] = _read(self._document.get(member), kind, self.context)
+        if isinstance(value, np.ndarray):
+            # It is kept, for the table and the picture too.
+            value.flags.writeable = False
         return value
 
     def __setattr__(self, name: str, value: object) -> None:
@@ -76,11 +104,13 @@ class Record:
         return [*object.__dir__(self), *self.fields()]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return record, (self.schema, self.document, self.context)
+        curve = self.context.get("curve")
+        kept = {} if curve is None else {"curve": FixedCurve(*curve.points())}
+        return record, (self.schema, self._document, {**self.context, **kept})
 
     def scalars(self) -> dict[str, Any]:
         """The members that are single numbers or words."""
-        given = {name: self.document.get(name) for name in self.fields()}
+        given = {name: self._document.get(name) for name in self.fields()}
         return {name: value for name, value in given.items() if isinstance(value, int | float | str)}
 
     def table(self) -> Table:
@@ -92,7 +122,7 @@ class Record:
     def to_frame(self) -> pandas.DataFrame:
         """The table of the result in SI units, which `attrs["units"]` of the frame has by column."""
         columns, units = self.table()
-        frame: pandas.DataFrame = needed("pandas", "pandas").DataFrame(columns, copy=False)
+        frame: pandas.DataFrame = needed("pandas", "pandas").DataFrame(columns)
         frame.attrs["units"] = units
         return frame
 
@@ -119,21 +149,51 @@ class Record:
     def __repr__(self) -> str:
         parts = []
         for name in self.fields():
-            value = self.document.get(name)
-            if isinstance(value, list):
-                parts.append(f"{name}=[{len(value)}]")
-            elif isinstance(value, dict):
-                parts.append(f"{name}=…")
-            elif value is not None:
-                parts.append(f"{name}={value!r}")
+            text = self._shown(name)
+            if text is not None:
+                parts.append(f"{name}={text}")
         return f"{self.schema}({', '.join(parts)})"
 
+    def _shown(self, name: str) -> str | None:
+        """A field in a line: numbers with their units, estimates with their errors."""
+        value, (kind, unit) = self._document.get(name), schemas.FIELDS[self.schema].get(name, ("", None))
+        if value is None:
+            return None
+        if isinstance(value, list):
+            return f"[{len(value)}]"
+        if isinstance(value, dict):
+            several = _estimates(value) if kind.startswith("{") else None
+            return _estimate(value, unit) or several or self._short(name, kind) or "…"
+        if isinstance(value, float) and not kind:
+            return shown.quantity(value, unit)
+        return repr(value)
+
+    def _short(self, name: str, kind: str) -> str | None:
+        """A record of few numbers."""
+        value = self._document[name]
+        return repr(getattr(self, name)) if kind in schemas.FIELDS and len(value) <= MOST_SHOWN else None
+
     def _repr_html_(self) -> str:
-        try:
-            html: str = self.to_frame().to_html(max_rows=20)
-        except ModuleNotFoundError:
-            html = f"<pre>{escape(repr(self))}</pre>"
-        return f"<b>{self.schema}</b>{html}"
+        return f"<b>{self.schema}</b>{shown.table(*self.table())}"
+
+
+def _estimate(value: dict[str, Any], unit: str | None) -> str | None:
+    """A value with its standard error."""
+    number, error = value.get("value"), value.get("standard_error")
+    if not isinstance(number, int | float):
+        return None
+    scale, symbol = shown.scaled(unit, abs(number))
+    wide = f" ± {error / scale:.2g}" if isinstance(error, int | float) else ""
+    return f"{number / scale:.6g}{wide} {symbol}".rstrip()
+
+
+def _estimates(values: dict[str, Any]) -> str | None:
+    """Estimates by their names."""
+    found = {
+        name: _estimate(value, members.MEMBERS.get(name)) for name, value in values.items() if isinstance(value, dict)
+    }
+    known = {name: text for name, text in found.items() if text is not None}
+    return f"{{{', '.join(f'{name}: {text}' for name, text in known.items())}}}" if known else None
 
 
 class Result(Record):
@@ -171,8 +231,17 @@ class Rows(Sequence[T], Generic[T]):
 
     def __init__(self, schema: str, documents: list[dict[str, Any]], context: Mapping[str, Any] | None = None):
         self.schema = schema
-        self.documents = documents
+        self._documents = documents
         self._context = context or {}
+
+    @property
+    def documents(self) -> list[dict[str, Any]]:
+        """The JSON documents of the rows: a copy."""
+        return deepcopy(self._documents)
+
+    def reply_document(self) -> list[dict[str, Any]]:
+        """As `documents`: a request takes the rows where it takes their documents."""
+        return self.documents
 
     @overload
     def __getitem__(self, index: int) -> T: ...
@@ -180,12 +249,12 @@ class Rows(Sequence[T], Generic[T]):
     def __getitem__(self, index: slice) -> Rows[T]: ...
     def __getitem__(self, index: int | slice) -> T | Rows[T]:
         if isinstance(index, slice):
-            return Rows(self.schema, self.documents[index], self._context)
-        found: T = record(self.schema, self.documents[index], self._context)
+            return Rows(self.schema, self._documents[index], self._context)
+        found: T = record(self.schema, self._documents[index], self._context)
         return found
 
     def __len__(self) -> int:
-        return len(self.documents)
+        return len(self._documents)
 
     def __getattr__(self, name: str) -> Any:
         member = name.removesuffix("_")
@@ -194,11 +263,11 @@ class Rows(Sequence[T], Generic[T]):
         return self.column(member)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Rows, (self.schema, self.documents, self._context)
+        return Rows, (self.schema, self._documents, self._context)
 
     def column(self, name: str) -> NDArray[Any]:
         """A field of each row as an array, with NaN where a number is missing."""
-        return as_column([row.get(name) for row in self.documents])
+        return as_column([row.get(name) for row in self._documents])
 
     def table(self) -> Table:
         """The columns of the rows with their units."""
@@ -225,7 +294,7 @@ class Named(dict[str, T], Generic[T]):
         """A row for each, with its name as the index."""
         module = needed("pandas", "pandas")
         rows = Rows[T](
-            next(iter(self.values())).schema if self else "Estimate", [one.document for one in self.values()]
+            next(iter(self.values())).schema if self else "Estimate", [one._document for one in self.values()]
         )
         frame: pandas.DataFrame = module.DataFrame(rows.table()[0], index=module.Index(list(self), name="name"))
         return frame
@@ -249,14 +318,20 @@ def as_column(values: list[Any]) -> NDArray[Any]:
     return column
 
 
+def _context_of_part(context: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The context of a part of a reply, which is not the whole curve."""
+    return {name: value for name, value in context.items() if name != "curve"}
+
+
 def _read(value: Any, kind: str, context: Mapping[str, Any]) -> Any:
     """The attribute of a JSON value: `kind` as `schemas.FIELDS` has it."""
     if value is None:
         return None
+    context = _context_of_part(context)
     if not kind:
         # A pair where others of its kind are one number, such as a force in the plane.
         is_pair = isinstance(value, list) and bool(value) and all(isinstance(one, int | float) for one in value)
-        return np.array(value, dtype=np.float64) if is_pair else value
+        return np.array(value, dtype=np.float64) if is_pair else deepcopy(value)
     if kind == "[]":
         return np.array(value, dtype=np.float64)
     if kind in ("#", "?"):

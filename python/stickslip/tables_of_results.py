@@ -27,13 +27,13 @@ def table(result: Record) -> Table:
         part = getattr(result, name)
         if isinstance(part, Record) and (found := _own_columns(part))[0]:
             return found
-    return _flat([result.document], result.schema)
+    return _flat([result._document], result.schema)
 
 
 def rows_table(rows: Rows[Any]) -> Table:
     """The table of rows."""
     special = _ROWS.get(rows.schema)
-    return special(rows) if special else _flat(rows.documents, rows.schema)
+    return special(rows) if special else _flat(rows._documents, rows.schema)
 
 
 def _own_columns(result: Record) -> Table:
@@ -43,7 +43,7 @@ def _own_columns(result: Record) -> Table:
     arrays = {name: array for name, array in arrays.items() if array is not None and array.ndim == 1}
     if len({len(array) for array in arrays.values()}) != 1:
         return {}, {}
-    ordered = {name: arrays[name] for name in result.document if name in arrays}
+    ordered = {name: arrays[name] for name in result._document if name in arrays}
     return ordered, _units(ordered, result.schema)
 
 
@@ -83,7 +83,7 @@ def _history(rows: Rows[Any]) -> Table:
     """Moves: the state after each, the cycle that it closed, and what was measured there."""
     columns = {"sequence": rows.sequence, "at": rows.at}
     units = {"sequence": "1", "at": "UTC"}
-    state, state_units = _flat(_optional(rows.documents, "state"), "State")
+    state, state_units = _flat(_optional(rows._documents, "state"), "State")
     columns |= state
     units |= state_units
     for part, schema, names in (
@@ -94,7 +94,7 @@ def _history(rows: Rows[Any]) -> Table:
             {"force": "observed_force", "predicted": "predicted_force", "innovation": "innovation"},
         ),
     ):
-        found = _optional(rows.documents, part)
+        found = _optional(rows._documents, part)
         for name, shown in names.items():
             columns[shown] = as_column([one.get(name) for one in found])
             units[shown] = schemas.FIELDS[schema][name][1] or ""
@@ -113,11 +113,11 @@ def _loop(result: Record) -> Table:
 
 def _cycles(rows: Rows[Any]) -> Table:
     """Steady cycles with their harmonics."""
-    columns, units = _flat(rows.documents, rows.schema)
-    count = max((len(row.get("harmonics") or ()) for row in rows.documents), default=0)
+    columns, units = _flat(rows._documents, rows.schema)
+    count = max((len(row.get("harmonics") or ()) for row in rows._documents), default=0)
     for index in range(count):
         for name in ("in_phase", "quadrature"):
-            found = [row["harmonics"][index][name] for row in rows.documents]
+            found = [row["harmonics"][index][name] for row in rows._documents]
             columns[f"{name}_{index + 1}"] = as_column(found)
     return columns, units
 
@@ -133,14 +133,14 @@ def _solvers(rows: Rows[Any]) -> Table:
     """Solvers by their names, with the number of their elements."""
     kinds: list[str] = []
     counts: list[Any] = []
-    for row in rows.documents:
+    for row in rows._documents:
         solver = row["solver"]
         name = solver if isinstance(solver, str) else next(iter(solver))
         kinds.append(name)
         counts.append(None if isinstance(solver, str) else solver[name].get("count"))
-    columns, units = _flat(rows.documents, rows.schema)
+    columns, units = _flat(rows._documents, rows.schema)
     columns.pop("solver", None)
-    refused = [None if row.get("refused") is None else row["refused"]["detail"] for row in rows.documents]
+    refused = [None if row.get("refused") is None else row["refused"]["detail"] for row in rows._documents]
     first = {"solver": np.array(kinds), "count": np.array(counts, dtype=np.float64)}
     last = {"refused": as_column(refused)} if any(refused) else {}
     return first | columns | last, units | {"count": "1"}
@@ -150,9 +150,9 @@ def _fitted(rows: Rows[Any]) -> Table:
     """The points of fitted loops."""
 
     def joined(name: str) -> Any:
-        return np.concatenate([np.array(row[name], dtype=np.float64) for row in rows.documents] or [np.empty(0)])
+        return np.concatenate([np.array(row[name], dtype=np.float64) for row in rows._documents] or [np.empty(0)])
 
-    index = np.repeat(np.arange(len(rows)), [len(row["force"]) for row in rows.documents])
+    index = np.repeat(np.arange(len(rows)), [len(row["force"]) for row in rows._documents])
     measured, fitted = joined("measured"), joined("force")
     columns = {"loop": index, "displacement": joined("displacement"), "measured": measured, "fitted": fitted}
     columns |= {"residual": measured - fitted, "used": joined("used").astype(np.int64)}
@@ -171,7 +171,7 @@ def _scan(result: Record) -> Table:
 def _peaks(result: Record) -> Table:
     """Extrema of the shear stress, each by the next one outwards, the one inside it, the centre, or its sign."""
     columns, units = rows_table(result.peaks)
-    shears = [peak.get("shear") for peak in result.peaks.documents]
+    shears = [peak.get("shear") for peak in result.peaks._documents]
     words = []
     for index, own in enumerate(shears):
         outside = shears[index + 1] if index + 1 < len(shears) else None
@@ -194,7 +194,7 @@ def _simulation(result: Record) -> Table:
 
 
 def _states_in_plane(rows: Rows[Any]) -> Table:
-    return _flat(rows.documents, rows.schema, ("displacement", "force"))
+    return _flat(rows._documents, rows.schema, ("displacement", "force"))
 
 
 def _rating(result: Record) -> Table:

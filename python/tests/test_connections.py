@@ -300,3 +300,24 @@ def test_files_are_read_alike(engine: Any) -> None:
     assert by_number.loop["force"][3] == pytest.approx(0.3 * 4.4482216152605)
     scan = engine.read_scan(f"x (mm),z (um)\n{rows}\n".encode())
     assert scan.units == {"lateral": "mm", "height": "um"}
+
+
+def test_a_forked_child_of_a_served_process_ends() -> None:
+    program = """
+import os, sys, time
+import stickslip as ss
+with ss.serve() as api:
+    child = os.fork()
+    if child == 0:
+        sys.exit(7)
+    for _ in range(600):
+        done, status = os.waitpid(child, os.WNOHANG)
+        if done:
+            break
+        time.sleep(0.1)
+    assert done and os.waitstatus_to_exitcode(status) == 7, "the child hangs"
+    # The server of the parent goes on.
+    assert api.Contact(ss.Sphere(0.01), ss.Moduli(1e11, 8e10), 0.3, normal_force=1.0).sequence == 0
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=180)
+    assert done.returncode == 0, done.stderr

@@ -66,7 +66,7 @@ def test_moves_of_a_contact(api: ss.Client, kind: str) -> None:
         )
         for contact in (here, there):
             contact.path([8e-8, -5e-8])
-        replies = [contact._advance(kind, request) for contact in (here, there)]
+        replies = [contact._advance(kind, request)[0] for contact in (here, there)]
         replies += [
             contact.stress(50, fields=["pressure", "shear", "slip", "displacement"]).document
             for contact in (here, there)

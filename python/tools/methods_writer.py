@@ -6,7 +6,19 @@ import json
 import textwrap
 from typing import Any
 
-from openapi_schemas import Schema, attribute, class_of, fields, kinds, name_of, operations, request_of
+from openapi_schemas import (
+    Schema,
+    attribute,
+    class_of,
+    fields,
+    inner_members,
+    kinds,
+    members_of,
+    name_of,
+    operations,
+    request_of,
+    words_of,
+)
 from requests_writer import (
     SHORT_MEMBERS,
     alternatives,
@@ -64,7 +76,27 @@ class Method:
         shorthand = SHORT.get(name) if short else None
         if shorthand:
             said += f" A number alone is its `{shorthand}`."
-        self.keywords[name] = (shape, said, part)
+        elif name in MORE:
+            said += MORE[name]
+        self.keywords[name] = (shape, said + self.allowed(what), part)
+
+    def allowed(self, what: Schema) -> str:
+        """The words, the members and the default of a keyword, for its description."""
+        words = words_of(what, self.schemas)
+        needed, others = members_of(what, self.schemas)
+        text = f" One of {', '.join(map(repr, words))}." if words and len(words) <= 24 else ""
+        if name_of(what) in ("ContactDefinition", "CreateRequest", "Profile"):
+            return ""
+        if needed:
+            text += f" Needs `{'`, `'.join(needed)}`" + (f"; may have `{'`, `'.join(others)}`." if others else ".")
+        elif others and name_of(what):
+            text += f" May have `{'`, `'.join(others)}`."
+        text += inner_members(what, self.schemas)
+        default = what.get("default", self.schemas.get(name_of(what), {}).get("default"))
+        described = what.get("description", "")
+        if default is not None and "Default:" not in described and "default" not in described:
+            text += f" Default: {json.dumps(default)}."
+        return text
 
     def short(self, what: Schema) -> str:
         """The type of the one number that may stand for an object."""
@@ -243,6 +275,16 @@ LOOSE = {
         "outputs": "str | Mapping[str, str] | Sequence[types.Output]",
     },
     "/fretting": {"displacement": "Quantity | Quantities"},
+}
+#: What a keyword takes beside what the document says.
+MORE = {
+    "critical_distance": " A length alone is used by the point method.",
+    "known": " A number alone is a value that is held fixed.",
+    "bulk": " A number alone is its amplitude.",
+    "free": " If left out: friction, g_star and force_offset.",
+    "body": " If left out, the first body that is not rigid.",
+    "loops": " A loop is a file or its path, a table, a document, or arrays of displacement and force.",
+    "scan": " A file or its path, a table, a document, or arrays of x and z, or of x, y and z.",
 }
 #: Keywords that no member of the document has.
 EXTRA = {

@@ -6,6 +6,7 @@ import json
 import keyword
 import re
 from collections.abc import Iterator
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,45 @@ def without_null(schema: Schema) -> Schema:
     """A reference that may be null, without that."""
     choices = [one for one in schema.get("oneOf", schema.get("anyOf", [])) if one.get("type") != "null"]
     return choices[0] if len(choices) == 1 else schema
+
+
+def words_of(schema: Schema, schemas: Schema) -> list[str]:
+    """The words that a value may be, or each item of a list; empty if it may be others too."""
+    schema = without_null(schema)
+    if "items" in schema:
+        return words_of(schema["items"], schemas)
+    name = name_of(schema)
+    if name:
+        return words_of(schemas[name], schemas)
+    if "enum" in schema:
+        return [word for word in schema["enum"] if isinstance(word, str)]
+    choices = schema.get("oneOf", [])
+    found = [words_of(choice, schemas) for choice in choices] if all("enum" in one for one in choices) else []
+    return [word for words in found for word in words]
+
+
+def members_of(schema: Schema, schemas: Schema) -> tuple[list[str], list[str]]:
+    """The members that an object needs, and those that it may have."""
+    name = name_of(without_null(schema))
+    members, required = fields(schemas.get(name, {}), schemas) if name else ({}, set())
+    return [one for one in members if one in required], [one for one in members if one not in required]
+
+
+def inner_members(schema: Schema, schemas: Schema) -> str:
+    """What the members of an object that are objects themselves have, in a sentence."""
+    name = name_of(without_null(schema))
+    if not name:
+        return ""
+    parts = []
+    for member, what in fields(schemas[name], schemas)[0].items():
+        inner = schemas.get(name_of(without_null(what)), {})
+        choices = inner.get("oneOf", [inner] if len(inner.get("properties", {})) == 1 else [])
+        given = [(one, part) for choice in choices for one, part in choice.get("properties", {}).items()]
+        if given:
+            named = [(one, [*chain(*members_of(part, schemas))]) for one, part in given if name_of(part)]
+            texts = [f"`{one}` (`{'`, `'.join(names)}`)" for one, names in named]
+            parts += [f" `{member}` has {' or '.join(texts)}."] if texts else []
+    return "".join(parts)
 
 
 def unit(description: str) -> str | None:

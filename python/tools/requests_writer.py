@@ -21,6 +21,8 @@ from results_writer import result_classes, shown, summary, wrapped
 
 #: Requests whose members are places that have classes too, by the names of these.
 PLACES = {"Line": "SubsurfaceLine", "Plane": "SubsurfacePlane", "Surface": "SubsurfaceSurface"}
+#: Shapes that may be given by their diameter.
+ROUND = ('"sphere"', '"exact_sphere"', '"cylinder"')
 #: The method of a computation where it is not the last part of its path.
 METHODS = {"/fit": "fit_loop", "/profiles/fit": "fit_profile"}
 #: Members whose one number may stand for the whole object, in the order in which they are looked for.
@@ -232,10 +234,10 @@ def profiles_file(api: Schema) -> str:
         'Written by `tools/generate.py`.\n"""\n',
         "from __future__ import annotations\n",
         "from collections.abc import Mapping, Sequence",
-        "from dataclasses import KW_ONLY, dataclass",
+        "from dataclasses import KW_ONLY, InitVar, dataclass",
         "from typing import Any, ClassVar\n",
         "from . import request_types as types",
-        "from .bodies import ContactPart, Material, Part, Shape",
+        "from .bodies import ContactPart, Material, Part, Shape, radius_of",
         "from .documents import Quantities, Quantity\n",
         "\n@dataclass(frozen=True, eq=False)",
         "class Profile(Part):",
@@ -298,13 +300,20 @@ def dataclass(name: str, base: str, schema: Schema, schemas: Schema, kind: str =
     if kind:
         text.append(f"\n    TYPE: ClassVar[str] = {kind}")
     text.append("")
+    round_ = kind in ROUND
     for member in sorted(members, key=lambda one: (one != first, one not in required, list(members).index(one))):
         what = members[member]
         shape = "Sequence[Shape]" if name_of(what.get("items", {})) == "Profile" else type_of(what, schemas, "types.")
-        text.append(f"    {attribute(member)}: {shape}" + ("" if member in required else " | None = None"))
+        optional = member not in required or (round_ and member == "radius")
+        text.append(f"    {attribute(member)}: {shape}" + (" | None = None" if optional else ""))
         if "description" in what:
             text.append(wrapped(what["description"], "    "))
         if member == first:
             text.append("    _: KW_ONLY")
+    if round_:
+        text += [*(["    _: KW_ONLY"] if not first else []), "    diameter: InitVar[Quantity | None] = None"]
+        text += ['    """The diameter 2 R, m, in place of the radius."""', ""]
+        text += ["    def __post_init__(self, diameter: Quantity | None) -> None:"]
+        text += ["        radius_of(self, self.radius, diameter)"]
     text.append("")
     return text

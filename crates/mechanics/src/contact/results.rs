@@ -7,6 +7,8 @@ use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::{Profile, StressRadius};
+use crate::range;
+use crate::range::error::Error;
 
 /// The results for the present state, each at once: a straight move has no error of its path.
 ///
@@ -67,6 +69,23 @@ impl Contact {
     /// Indentation, m, that carries a normal force, N.
     pub(crate) fn indentation_for(&self, normal_force: f64) -> DoubleDouble {
         DoubleDouble::from(normal::indentation(&self.indenter, &self.elasticity, normal_force))
+    }
+
+    /// Indentation, m, under a normal force, N.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] or [`Error::BeyondProfile`] for a force that the profile has no contact for.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// // Hertz: d goes with F_N^(2/3).
+    /// assert!((contact.indentation_under(32_000.0)? / 0.04 - 1.0).abs() < 1e-14);
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn indentation_under(&self, normal_force: f64) -> Result<f64, Error> {
+        let indentation = self.indentation_for(range::check_normal_force(normal_force)?).value();
+        self.check_indentation(indentation)?;
+        Ok(indentation)
     }
 
     /// Normal force, N; to the bit the prescribed one, where one was prescribed.
