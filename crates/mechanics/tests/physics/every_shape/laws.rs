@@ -213,7 +213,7 @@ impl Case<'_> {
             }
             let one = [contact.pressure(r), contact.shear(r)];
             for (one, many, name) in [(one[0], p, "p"), (one[1], tau, "tau")] {
-                let same = one == many || (one - many).abs() <= 1e-9 * (bound + unit);
+                let same = one.to_bits() == many.to_bits() || (one - many).abs() <= 1e-9 * (bound + unit);
                 self.check(contact, same, || format!("{name} at {r:e}: {one:e} alone, {many:e} among many"));
             }
             if let Some(most) = largest[0] {
