@@ -122,7 +122,9 @@ def half(diameter: Any) -> Any:
 
 def radius_of(part: Any, radius: Any, diameter: Any) -> None:
     """Sets the radius of a shape that is given by one of both."""
-    if (radius is None) == (diameter is None):
+    if radius is None and diameter is None:
+        raise TypeError(f"{type(part).__name__} has either a radius or a diameter, and none is given")
+    if radius is not None and diameter is not None:
         raise quantities.refused("/radius", f"{type(part).__name__} has either a radius or a diameter")
     if diameter is not None:
         object.__setattr__(part, "radius", half(diameter))
