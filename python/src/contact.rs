@@ -7,8 +7,10 @@ use pyo3::types::PyBytes;
 use serde_json::{Map, Value, json};
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::{
-    Computation as _, Cycle, DisplayOptions, OnContact, StressTask, dry_run_relax, make_moves, shown_states,
+    Computation as _, ContactTask, Cycle, DisplayOptions, StressTask, Written as _, dry_run_relax, make_moves,
+    shown_states,
 };
+use stickslip_compute::documents::Parse as _;
 use stickslip_compute::formats::Format;
 use stickslip_compute::simulation::{self, Anew, present_warnings};
 use stickslip_compute::{Flag, Stop};
@@ -117,7 +119,7 @@ impl Contact {
     ) -> PyResult<(Bound<'py, PyBytes>, Option<Trace>)> {
         let reply = match kind {
             "move" => self.make_move(py, body)?,
-            "path" => interruptible(py, |stop| self.follow(&wire::read::<PathRequest>(body)?, stop))?,
+            "path" => interruptible(py, |stop| self.follow(&PathRequest::read(body)?, stop))?,
             _ => interruptible(py, |stop| self.relax(body, stop))?,
         };
         let (reply, before) = reply.map_err(refused)?;
@@ -157,8 +159,8 @@ impl Contact {
         let reply = interruptible(py, |stop| match kind {
             "stress" => self.stress(body, stop),
             "subsurface" => {
-                let task = wire::parse::<SubsurfaceRequest>(body)?.of_contact(&self.definition)?;
-                self.compute(task, stop)
+                let task = SubsurfaceRequest::parse(body)?.of_contact(&self.definition)?;
+                self.compute(Box::new(task), stop)
             }
             _ => self.cycle(body, stop),
         })?;
@@ -209,7 +211,7 @@ impl Contact {
 
 impl Contact {
     fn create(body: &[u8], stop: &dyn Stop) -> Result<Contact, Refusal> {
-        let checked = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)?;
+        let checked = simulation::check(CreateRequest::parse(body)?, &Anew(stop), stop)?;
         let Creation { label, definition, setup } = checked?;
         let state = simulation::contact(setup.clone(), "")?;
         Ok(Contact { id: Uuid::now_v7(), label, definition, setup, state, made: Vec::new(), calls: Vec::new() })
@@ -237,7 +239,7 @@ impl Contact {
 
     /// A single straight move takes microseconds, less than a thread for it would.
     fn make_move(&mut self, py: Python<'_>, body: &[u8]) -> PyResult<Result<Followed, Refusal>> {
-        let advance = match wire::read::<MoveRequest>(body) {
+        let advance = match MoveRequest::read(body) {
             Ok(advance) => advance,
             Err(rejection) => return Ok(Err(rejection.into())),
         };
@@ -296,7 +298,7 @@ impl Contact {
     }
 
     fn relax(&mut self, body: &[u8], stop: &dyn Stop) -> Result<Followed, Refusal> {
-        let relaxation = wire::read::<RelaxRequest>(body)?;
+        let relaxation = RelaxRequest::read(body)?;
         if !relaxation.dry_run {
             return self.follow(&relaxation.into(), stop);
         }
@@ -313,7 +315,7 @@ impl Contact {
         let request = wire::parse::<StressRequest>(Value::Object(body).to_string().as_bytes())?;
         let mut faults = Faults::default();
         let sampling = request.check(JsonPath::Root, &mut faults);
-        self.compute(StressTask { sampling: faults.done(sampling)?, residual }, stop)
+        self.compute(Box::new(StressTask { sampling: faults.done(sampling)?, residual }), stop)
     }
 
     /// The body is that of POST /cycle without a contact.
@@ -321,18 +323,17 @@ impl Contact {
         let mut body: Map<String, Value> =
             serde_json::from_slice(body).map_err(|error| Refusal::new(Code::NotJson, error.to_string()))?;
         body.insert("contact".to_owned(), json!(self.loaded_definition()));
-        let request = wire::parse::<CycleRequest>(Value::Object(body).to_string().as_bytes())?;
+        let request = CycleRequest::parse(Value::Object(body).to_string().as_bytes())?;
         let checked = request.check_with(&Ready(&self.setup.profile, stop))?;
         if checked.2.map.is_some() {
-            return Ok(DisplayOptions::in_format(Format::Columns).write(&Cycle::run(checked, stop)?, stop)??);
+            return Ok(Cycle::run(checked, stop)?.write(&DisplayOptions::in_format(Format::Columns), stop)??);
         }
-        self.compute(checked.2, stop)
+        self.compute(Box::new(checked.2), stop)
     }
 
-    fn compute<T: OnContact>(&self, task: T, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
-        let shown = DisplayOptions::in_format(Format::Columns);
+    fn compute(&self, task: Box<dyn ContactTask>, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
         let outcome = task.run(self.state.clone(), self.made.len() as u64, stop)?;
-        Ok(shown.write(&outcome, stop)??)
+        Ok(outcome.write(&DisplayOptions::in_format(Format::Columns), stop)??)
     }
 }
 

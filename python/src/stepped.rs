@@ -7,13 +7,14 @@ use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use serde_json::Value;
+use stickslip_compute::documents::Parse as _;
 use stickslip_compute::simulation::{self, Anew};
 use stickslip_compute::{Flag, Refusal, Stop};
 use stickslip_mechanics::Error;
 use stickslip_mechanics::range::Range;
 use stickslip_wire::definition::SharedSetup;
 use stickslip_wire::session::Creation;
-use stickslip_wire::{self as wire, Code, CreateRequest};
+use stickslip_wire::{Code, CreateRequest};
 
 use super::interrupt::interruptible;
 use super::problem::refused;
@@ -145,7 +146,7 @@ impl<C: Clone + Send + Sync> Stepped<C> {
 
 /// What the JSON text of a definition means.
 pub fn setup(body: &[u8], stop: &dyn Stop) -> Result<SharedSetup, Refusal> {
-    let Creation { setup, .. } = simulation::check(wire::parse::<CreateRequest>(body)?, &Anew(stop), stop)??;
+    let Creation { setup, .. } = simulation::check(CreateRequest::parse(body)?, &Anew(stop), stop)??;
     Ok(setup)
 }
 

@@ -5,9 +5,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use stickslip_compute::Refusal;
 use stickslip_compute::Stop;
+use stickslip_compute::documents::Parse as _;
 use stickslip_compute::simulation::{self, Anew};
 use stickslip_wire::sweep::indices;
-use stickslip_wire::{self as wire, Axis, Output, SweepRequest};
+use stickslip_wire::{Axis, Output, SweepRequest};
 
 use super::compute::named;
 use super::interrupt::interruptible;
@@ -24,9 +25,8 @@ impl Sweep {
     /// Plans the sweep of the JSON text of a request.
     #[new]
     fn new(py: Python<'_>, body: &[u8]) -> PyResult<Sweep> {
-        let plan = |stop: &dyn Stop| {
-            wire::read::<SweepRequest>(body).and_then(|sweep| simulation::Sweep::plan(sweep, &Anew(stop)))
-        };
+        let plan =
+            |stop: &dyn Stop| SweepRequest::read(body).and_then(|sweep| simulation::Sweep::plan(sweep, &Anew(stop)));
         Ok(Sweep { plan: interruptible(py, plan)?.map_err(refused)? })
     }
 

@@ -1,71 +1,52 @@
 //! Every computation over HTTP: its route with admission and limits, its part of the OpenAPI document, and its reply on
 //! a stored contact.
 
-use std::marker::PhantomData;
 use std::sync::Arc;
 
+use axum::extract::{FromRequestParts as _, Request, State};
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
-use axum::routing::{MethodRouter, post};
+use axum::routing::post;
 use serde_json::json;
 use utoipa::openapi::RefOr;
 use utoipa::openapi::path::{HttpMethod, Operation, PathItem, PathsBuilder};
-use utoipa::{PartialSchema, ToSchema};
 use uuid::Uuid;
 
 use crate::admission::Deadline;
 use crate::otlp;
 use stickslip_compute::computations::{
-    Computation, DisplayOptions, Example, FromStored, OnContact, Outcome, Route, Task, Visitor,
+    About, CheckedTask, ContactTask, DisplayOptions, Entry, Example, Route, Schemas,
 };
 
-use super::extract::CheckedBody;
+use super::extract::checked_document;
 use super::facts::{Facts, Routes};
 use super::formats::{self, Format};
 use super::problem::Problem;
-use super::query_parameters::{CheckedQuery, QueryParams, QueryReader, described_format, words};
+use super::query_parameters::{GivenQuery, described_format, words};
 use super::reply;
 use super::request_context::RequestContext;
 use super::state::{App, TenantApp};
 
 impl Routes {
-    fn add_computation<C: Computation>(&mut self, facts: Facts, handler: MethodRouter<Arc<App>>) {
-        let Some(route) = C::ABOUT.route else { return };
-        let mut schemas = Vec::new();
-        add_schemas::<C::Request>(&mut schemas);
-        add_schemas::<<C::Outcome as Outcome>::Reply>(&mut schemas);
-        let described = PathItem::new(HttpMethod::Post, operation::<C>(route));
+    /// Adds the route of a computation, and the schemas of its documents.
+    pub fn add_computation(&mut self, entry: Entry) {
+        let Some(route) = entry.about.route else { return };
+        let schemas = (entry.schemas)();
+        let described = PathItem::new(HttpMethod::Post, operation(&entry, route, &schemas));
         let paths = PathsBuilder::new().path(route.path, described).build();
-        self.add(facts, (schemas, paths, handler));
+        let facts = if entry.takes_stored { Facts::READS_STORED } else { Facts::READS };
+        let handler = post(async move |app: State<Arc<App>>, request: Request| answer(entry, app.0, request).await);
+        self.add(facts, (schemas.all, paths, handler));
     }
-}
-
-/// Adds the route of every computation, and the schemas of its documents.
-impl Visitor for Routes {
-    fn visit<C: Computation>(&mut self) {
-        self.add_computation::<C>(Facts::READS, post(answer::<C>));
-    }
-
-    fn visit_stored<C: FromStored>(&mut self) {
-        self.add_computation::<C>(Facts::READS_STORED, post(answer_stored::<C>));
-    }
-}
-
-type Schemas = Vec<(String, RefOr<utoipa::openapi::schema::Schema>)>;
-
-fn add_schemas<T: ToSchema>(schemas: &mut Schemas) {
-    schemas.push((T::name().into_owned(), <T as PartialSchema>::schema()));
-    T::schemas(schemas);
 }
 
 /// The operation of a computation.
-fn operation<C: Computation>(route: Route) -> Operation {
-    let about = C::ABOUT;
+fn operation(Entry { about, examples, .. }: &Entry, route: Route, schemas: &Schemas) -> Operation {
     let document = |name: &str| json!({"schema": {"$ref": format!("#/components/schemas/{name}")}});
     let example = |Example { name, summary, value }| (name, json!({"summary": summary, "value": value}));
-    let mut request = document(&C::Request::name());
-    request["examples"] = C::examples().into_iter().map(example).collect();
-    let reply = document(&<C::Outcome as Outcome>::Reply::name());
+    let mut request = document(&schemas.request);
+    request["examples"] = examples().into_iter().map(example).collect();
+    let reply = document(&schemas.reply);
     let operation = json!({
         "tags": [route.tag],
         "summary": about.title,
@@ -86,74 +67,68 @@ fn operation<C: Computation>(route: Route) -> Operation {
 }
 
 /// How a client wants the reply of a computation, as its query says.
-struct Shown<C>(Result<DisplayOptions, Problem>, PhantomData<fn() -> C>);
-
-impl<C: Computation> QueryParams for Shown<C> {
-    fn take(query: &mut QueryReader<'_>) -> Option<Shown<C>> {
-        let format = query.format(C::ABOUT.formats);
-        let choice = C::ABOUT.choice.and_then(|choice| words(choice.words, |word| word).read(choice.name, query));
-        let shown = format.map(|format| DisplayOptions { choice, ..DisplayOptions::in_format(format) });
-        Some(Shown(shown, PhantomData))
-    }
+fn shown(about: &About, query: GivenQuery, headers: &HeaderMap) -> Result<DisplayOptions, Problem> {
+    query.read_by(headers, |query| {
+        let format = query.format(about.formats);
+        let choice = about.choice.and_then(|choice| words(choice.words, |word| word).read(choice.name, query));
+        Some(format.map(|format| DisplayOptions { choice, ..DisplayOptions::in_format(format) }))
+    })?
 }
 
-type AskedFor<C> = Result<CheckedQuery<Shown<C>>, Problem>;
-
-fn shown<C: Computation>(query: AskedFor<C>) -> Result<DisplayOptions, Problem> {
-    // One with a single format has no parameters, and never refused those that it does not have.
-    if C::ABOUT.formats.len() == 1 { Ok(DisplayOptions::in_format(Format::Columns)) } else { query?.0.0 }
+fn written(about: &About, body: Vec<u8>, shown: &DisplayOptions) -> Response {
+    if about.formats.len() == 1 { reply::json(body) } else { formats::reply(shown.format, body) }
 }
 
-fn written<C: Computation>(body: Vec<u8>, shown: &DisplayOptions) -> Response {
-    if C::ABOUT.formats.len() == 1 { reply::json(body) } else { formats::reply(shown.format, body) }
-}
-
-/// Answers a request that defines its contact.
-async fn answer<C: Computation>(query: AskedFor<C>, request: CheckedBody<C::Request>) -> Result<Response, Problem> {
-    let shown = shown::<C>(query)?;
-    run::<C>(&request.context, request.body, shown).await
-}
-
-/// Answers a request that may name a stored contact.
-async fn answer_stored<C: FromStored>(
-    TenantApp(app): TenantApp,
-    query: AskedFor<C>,
-    request: CheckedBody<C::Request>,
+/// Answers a request, which may name a stored contact if the computation takes one.
+async fn answer(
+    Entry { about, request: kind, .. }: Entry,
+    app: Arc<App>,
+    request: Request,
 ) -> Result<Response, Problem> {
-    let shown = shown::<C>(query)?;
-    let CheckedBody { body, context, .. } = request;
-    match C::stored(body) {
+    let (mut parts, body) = request.into_parts();
+    // Those of a computation with a single format have no parameters, and never refused those that they do not have.
+    let shown = match GivenQuery::of(&parts) {
+        _ if about.formats.len() == 1 => Ok(DisplayOptions::in_format(Format::Columns)),
+        Ok(query) => shown(&about, query, &parts.headers),
+        Err(problem) => Err(problem),
+    };
+    let Ok(TenantApp(of_tenant)) = TenantApp::from_request_parts(&mut parts, &app).await;
+    let document = checked_document(Request::from_parts(parts, body), &app, kind, false).await?;
+    let (task, _, context) = document.of::<Box<dyn CheckedTask>>()?;
+    let shown = shown?;
+    match task.stored() {
+        Err(task) => run(&context, &about, task, shown).await,
         Ok((id, expected, task)) => {
             let memory = &mut context.admission.memory.clone();
-            let (_, body) = app.sessions.compute_on(id, expected, task, shown, memory).await?;
-            Ok(written::<C>(body, &shown))
+            let (_, body) = of_tenant.sessions.compute_on(id, expected, task, shown, memory).await?;
+            Ok(written(&about, body, &shown))
         }
-        Err(task) => run::<C>(&context, task, shown).await,
     }
 }
 
-async fn run<C: Computation>(
+async fn run(
     context: &RequestContext,
-    task: Task<C>,
+    about: &About,
+    task: Box<dyn CheckedTask>,
     shown: DisplayOptions,
 ) -> Result<Response, Problem> {
-    C::check_shown(&task, &shown)?;
-    context.reserve(C::bytes(&task) + shown.bytes(C::rows(&task))).await?;
-    let cost = C::cost(&task).saturating_add(shown.format.cost());
+    task.check_shown(&shown)?;
+    context.reserve(task.bytes(&shown)).await?;
+    let cost = task.cost(&shown);
     let work = move |stop: &Deadline| {
-        let outcome = otlp::part!("solve").in_scope(|| C::run(task, stop))?;
-        Ok::<_, Problem>(otlp::part!("write").in_scope(|| shown.write(&outcome, stop))??)
+        let outcome = otlp::part!("solve").in_scope(|| task.run(stop))?;
+        Ok::<_, Problem>(otlp::part!("write").in_scope(|| outcome.write(&shown, stop))??)
     };
-    Ok(written::<C>(context.run(cost, work).await??, &shown))
+    Ok(written(about, context.run(cost, work).await??, &shown))
 }
 
 /// The reply of a computation on a stored contact, with the sequence of the contact as its version, or 304.
-pub async fn get_of_contact<T: OnContact>(
+pub async fn get_of_contact(
     app: &App,
     id: Uuid,
     headers: &HeaderMap,
     format: Format,
-    task: T,
+    task: Box<dyn ContactTask>,
     context: &RequestContext,
 ) -> Result<Response, Problem> {
     match unchanged(app, id, headers, format).await? {
@@ -172,11 +147,11 @@ pub async fn unchanged(app: &App, id: Uuid, headers: &HeaderMap, format: Format)
 }
 
 /// The reply of a computation on a stored contact, with the sequence of the contact as its version.
-pub async fn of_contact<T: OnContact>(
+pub async fn of_contact(
     app: &App,
     id: Uuid,
     format: Format,
-    task: T,
+    task: Box<dyn ContactTask>,
     context: &RequestContext,
 ) -> Result<Response, Problem> {
     let shown = DisplayOptions::in_format(format);

@@ -1,5 +1,6 @@
 //! The body of a request: read within limits, checked, and counted against the memory of the server.
 
+use std::any::Any;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -17,8 +18,8 @@ use crate::otlp;
 use crate::server::connection_limits::DISCARDED;
 use crate::store::RequestKey;
 use stickslip_compute::computations::files;
+use stickslip_compute::documents::{Kind, Parse};
 use stickslip_compute::simulation::{bytes, cost};
-use stickslip_wire::{self as wire, Document};
 
 use super::path_and_headers::IdempotencyKey;
 use super::problem::{Code, Problem};
@@ -28,58 +29,91 @@ use super::state::App;
 
 /// A checked body, and the headers that make the request safe to repeat. If it is `OPTIONAL`, no body at all counts as
 /// `{}`.
-pub struct CheckedBody<T: Document, const OPTIONAL: bool = false> {
+pub struct CheckedBody<T: Parse, const OPTIONAL: bool = false> {
     pub body: T::Checked,
     /// The idempotency key, with a fingerprint of the request.
     pub key: Option<RequestKey>,
     pub context: Arc<RequestContext>,
 }
 
-impl<T: Document + 'static, const OPTIONAL: bool> FromRequest<Arc<App>> for CheckedBody<T, OPTIONAL> {
+impl<T: Parse, const OPTIONAL: bool> FromRequest<Arc<App>> for CheckedBody<T, OPTIONAL> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, app: &Arc<App>) -> Result<Self, Problem> {
-        let unsupported = || Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json");
-        // With or without a charset.
-        let declared = essence(request.headers()).map(|essence| essence.eq_ignore_ascii_case(b"application/json"));
-        if !declared.unwrap_or(OPTIONAL) {
-            return Err(unsupported());
-        }
-        let (parts, mut bytes, context) = receive(request, BODY_LIMIT, app).await?;
-        if OPTIONAL && bytes.is_empty() {
-            bytes.extend_from_slice(b"{}");
-        } else if declared.is_none() {
-            return Err(unsupported());
-        }
-        let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
-        let length = bytes.len();
-        let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
-        if cost > 0 {
-            context.reserve(length.saturating_mul(T::PARSED)).await?;
-        }
-        let profiles = app.sessions.profiles(context.deadline());
-        let check = profiles.clone();
-        let work = move |_: &_| {
-            let _parsing = otlp::part!("parse").entered();
-            let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
-            let document = wire::parse::<T>(&bytes)?;
-            let cost = check.cost(&document)?;
-            // A check that prepares a profile is work of its own, at this cost.
-            let read = if cost < INLINE { Ok(check.check(document)??) } else { Err((document, cost)) };
-            Ok::<_, Problem>((read, key))
-        };
-        let (read, key) = context.run(cost, work).await??;
-        let body = match read {
-            Ok(body) => body,
-            Err((document, cost)) => {
-                let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
-                context.reserve(shape + length.saturating_mul(T::PARSED)).await?;
-                let work = move |_: &_| otlp::part!("prepare").in_scope(|| profiles.check(document));
-                context.run(cost, work).await???
-            }
-        };
+        let document = checked_document(request, app, Kind::of::<T>(), OPTIONAL).await?;
+        let (body, key, context) = document.of::<T::Checked>()?;
         Ok(CheckedBody { body, key, context })
     }
+}
+
+/// A checked body without its type.
+pub struct CheckedDocument {
+    body: Box<dyn Any + Send>,
+    key: Option<RequestKey>,
+    context: Arc<RequestContext>,
+}
+
+impl CheckedDocument {
+    /// The parts of a checked body.
+    ///
+    /// # Errors
+    /// A [`Problem`] if it has another type, which is a fault of the service.
+    pub fn of<T: 'static>(self) -> Result<(T, Option<RequestKey>, Arc<RequestContext>), Problem> {
+        let body = self.body.downcast().map_err(|_| Problem::internal("a document has the type of another"))?;
+        Ok((*body, self.key, self.context))
+    }
+}
+
+/// Receives, parses and checks the body of a request; `optional` is as in [`CheckedBody`].
+///
+/// # Errors
+/// A [`Problem`] that says what is wrong with the body, or what it could not get.
+pub async fn checked_document(
+    request: Request,
+    app: &Arc<App>,
+    kind: Kind,
+    optional: bool,
+) -> Result<CheckedDocument, Problem> {
+    let unsupported = || Problem::new(Code::UnsupportedMediaType, "Content-Type must be application/json");
+    // With or without a charset.
+    let declared = essence(request.headers()).map(|essence| essence.eq_ignore_ascii_case(b"application/json"));
+    if !declared.unwrap_or(optional) {
+        return Err(unsupported());
+    }
+    let (parts, mut bytes, context) = receive(request, BODY_LIMIT, app).await?;
+    if optional && bytes.is_empty() {
+        bytes.extend_from_slice(b"{}");
+    } else if declared.is_none() {
+        return Err(unsupported());
+    }
+    let IdempotencyKey { key } = IdempotencyKey::read(&parts.headers)?;
+    let length = bytes.len();
+    let cost = if length > cost::INLINE_BODY { INLINE } else { 0 };
+    if cost > 0 {
+        context.reserve(length.saturating_mul(kind.parsed)).await?;
+    }
+    let profiles = app.sessions.profiles(context.deadline());
+    let check = profiles.clone();
+    let work = move |_: &_| {
+        let _parsing = otlp::part!("parse").entered();
+        let key = key.map(|key| RequestKey { key, fingerprint: fingerprint(&parts, &bytes) });
+        let document = (kind.parse)(&bytes)?;
+        let cost = check.cost(&*document)?;
+        // A check that prepares a profile is work of its own, at this cost.
+        let read = if cost < INLINE { Ok(check.check(document)??) } else { Err((document, cost)) };
+        Ok::<_, Problem>((read, key))
+    };
+    let (read, key) = context.run(cost, work).await??;
+    let body = match read {
+        Ok(body) => body,
+        Err((document, cost)) => {
+            let shape = document.profile().map_or(0, |defined| bytes::of_shape(defined.profile));
+            context.reserve(shape + length.saturating_mul(kind.parsed)).await?;
+            let work = move |_: &_| otlp::part!("prepare").in_scope(|| profiles.check(document));
+            context.run(cost, work).await???
+        }
+    };
+    Ok(CheckedDocument { body, key, context })
 }
 
 /// The bytes of a file, with memory for what they become.

@@ -32,7 +32,7 @@ use utoipa_swagger_ui::{Config, SwaggerUi};
 use crate::access::Role;
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
-use stickslip_compute::computations::for_each_computation;
+use stickslip_compute::computations::entries;
 
 use facts::{Facts, Routes};
 use middleware::request_log::{serve as serve_request, serve_across};
@@ -128,7 +128,7 @@ pub fn need(method: &str, route: &str) -> Option<Role> {
 /// The routes that the OpenAPI document describes, with their facts.
 fn described() -> Routes {
     let mut routes = Routes { router: OpenApiRouter::with_openapi(openapi::base()), facts: Vec::new() };
-    for_each_computation(&mut routes);
+    entries().into_iter().for_each(|entry| routes.add_computation(entry));
     routes
         .with(Facts::WRITES, routes!(sweep::run_sweep))
         .with(Facts::READS, routes!(files::read_scan_file))

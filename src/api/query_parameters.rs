@@ -37,16 +37,19 @@ impl QueryReader<'_> {
     /// # Errors
     /// A [`Problem`] with every fault.
     pub fn read<T: QueryParams>(given: Vec<(String, String)>, headers: &HeaderMap) -> Result<T, Problem> {
-        let mut query = QueryReader { given, headers, known: Vec::new(), faults: Faults::default() };
-        let value = T::take(&mut query);
+        GivenQuery(given).read_by(headers, T::take)
+    }
+
+    /// Notes the parameters that were given and not taken.
+    fn refuse_others(&mut self) {
+        let query = self;
         let known = query.known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let known = if known.is_empty() { "none".to_owned() } else { known };
-        for (name, _) in query.given {
+        for (name, _) in std::mem::take(&mut query.given) {
             let again = query.known.iter().any(|known| *known == name);
             let detail = if again { "given twice".to_owned() } else { format!("unknown parameter, expected {known}") };
             query.faults.add(JsonPath::Root.member(&shown(&name)), detail);
         }
-        Ok(query.faults.done(value)?)
     }
 
     /// The format of the reply, out of these: the one that the parameter `format` names, or that `Accept` prefers.
@@ -56,6 +59,36 @@ impl QueryReader<'_> {
     pub fn format(&mut self, formats: &'static [Format]) -> Result<Format, Problem> {
         let named = closed(formats, Format::name).read("format", self);
         formats::chosen(named, self.headers, formats)
+    }
+}
+
+/// The parameters of a request as the client gives them.
+pub struct GivenQuery(Vec<(String, String)>);
+
+impl GivenQuery {
+    /// Those of a request.
+    ///
+    /// # Errors
+    /// A [`Problem`] if it has no such query.
+    pub fn of(parts: &Parts) -> Result<GivenQuery, Problem> {
+        let given = Query::try_from_uri(&parts.uri);
+        let Query(given) = given.map_err(|error| Rejection::Invalid(vec![Fault::new("", error.body_text())]))?;
+        Ok(GivenQuery(given))
+    }
+
+    /// Reads the parameters that `take` takes, and refuses all others.
+    ///
+    /// # Errors
+    /// A [`Problem`] with every fault.
+    pub fn read_by<T>(
+        self,
+        headers: &HeaderMap,
+        take: impl FnOnce(&mut QueryReader<'_>) -> Option<T>,
+    ) -> Result<T, Problem> {
+        let mut query = QueryReader { given: self.0, headers, known: Vec::new(), faults: Faults::default() };
+        let value = take(&mut query);
+        query.refuse_others();
+        Ok(query.faults.done(value)?)
     }
 }
 
@@ -83,10 +116,8 @@ pub struct CheckedQuery<T>(pub T);
 impl<T: QueryParams> FromRequestParts<Arc<App>> for CheckedQuery<T> {
     type Rejection = Problem;
 
-    async fn from_request_parts(parts: &mut Parts, app: &Arc<App>) -> Result<Self, Problem> {
-        let given = Query::<Vec<(String, String)>>::from_request_parts(parts, app).await;
-        let Query(given) = given.map_err(|error| Rejection::Invalid(vec![Fault::new("", error.body_text())]))?;
-        QueryReader::read(given, &parts.headers).map(CheckedQuery)
+    async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
+        GivenQuery::of(parts)?.read_by(&parts.headers, T::take).map(CheckedQuery)
     }
 }
 
@@ -139,10 +170,11 @@ pub(super) use parameters;
 
 /// The parameter of the formats, as the OpenAPI document has it, and what they show.
 pub fn described_format(values: &'static [Format], shows: &str) -> Parameter {
-    let others = if values.contains(&Format::Svg) {
-        "`ndjson`, `arrow` (an Arrow IPC stream), or a picture as `svg` or `png`"
-    } else {
-        "`ndjson` or `arrow` (an Arrow IPC stream)"
+    let others = match (values.contains(&Format::Arrow), values.contains(&Format::Svg)) {
+        (true, true) => "`ndjson`, `arrow` (an Arrow IPC stream), or a picture as `svg` or `png`",
+        (true, false) => "`ndjson` or `arrow` (an Arrow IPC stream)",
+        (false, true) => "`ndjson`, or a picture as `svg` or `png`",
+        (false, false) => "`ndjson`",
     };
     let shows = if shows.is_empty() { String::new() } else { format!(" {}", shows.trim()) };
     let description = format!(

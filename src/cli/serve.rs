@@ -33,7 +33,7 @@ use crate::jobs::{self, Jobs};
 use crate::otlp;
 use crate::server::connection_limits::{GRACE, LAST};
 use crate::server::tls::{Tls, TlsFiles};
-use crate::server::{ConnectionLimiter, OwnHosts, memory_budget};
+use crate::server::{ConnectionLimiter, OwnHosts, available_memory, memory_budget};
 use crate::sessions::{self, Sessions};
 use crate::store::{self, Store};
 
@@ -399,7 +399,7 @@ async fn listen(
         ConnectionLimiter::new(options.limits.connections(), options.limits.trusted_proxies.as_slice().into());
     let cache_bytes = options.cache_bytes.as_u64();
     let memory_bound = memory_budget::memory(&limiter.limits, pool.capacity(), cache_bytes, tls.is_some());
-    if let Some(memory) = memory_budget::available().filter(|memory| memory_bound > *memory) {
+    if let Some(memory) = available_memory::available().filter(|memory| memory_bound > *memory) {
         tracing::warn!(
             memory_bound = %ByteSize::b(memory_bound),
             memory = %ByteSize::b(memory),

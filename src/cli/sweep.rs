@@ -5,11 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
+use stickslip_wire::{PrepareAnew, SweepRequest};
 
 use super::command_error::CommandError;
 use super::io::{json, read, survive_file_size_limit, write};
 use super::progress;
+use stickslip_compute::documents::Parse as _;
 use stickslip_compute::formats::Format;
 use stickslip_compute::simulation::{Sweep as Plan, SweepResult};
 use stickslip_compute::{Flag, Refusal};
@@ -38,7 +39,7 @@ impl Sweep {
     }
 
     fn printed(&self) -> Result<(), CommandError> {
-        let plan = wire::read::<SweepRequest>(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &PrepareAnew));
+        let plan = SweepRequest::read(&read(&self.file)?).and_then(|sweep| Plan::plan(sweep, &PrepareAnew));
         let plan = plan.map_err(Refusal::from)?;
         let cores = std::thread::available_parallelism().map_or(1, usize::from);
         let threads = self.threads.unwrap_or(cores).max(1);

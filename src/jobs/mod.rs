@@ -22,10 +22,11 @@ use crate::metrics::metrics;
 use crate::store::job_store::JOB_LIFETIME;
 use crate::store::{IdempotentRequest, Job, JobLimits, Listeners, Reply, RequestKey, Store, StoreError, Tenant};
 use stickslip_compute::Nanoseconds;
+use stickslip_compute::documents::Parse as _;
 use stickslip_compute::simulation::cost::MARGIN;
 use stickslip_compute::simulation::{Sweep, SweepResult};
 use stickslip_wire::sweep::CheckedSweep;
-use stickslip_wire::{self as wire, JobList, JobProgress, JobReply, JobState, SweepRequest};
+use stickslip_wire::{JobList, JobProgress, JobReply, JobState, SweepRequest};
 
 pub use error::JobError;
 
@@ -252,7 +253,7 @@ impl Jobs {
         self.size(id).await?;
         let job = self.find_own(id).await?;
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
-        let read = move || wire::read::<SweepRequest>(request.as_bytes());
+        let read = move || SweepRequest::read(request.as_bytes());
         let draft = self.common.pool.run(INLINE, read).await?;
         let draft = draft.map_err(|error| JobError::Broken(format!("a job cannot be read: {error}")))?;
         let (mut rows, mut next) = (SweepResult::default(), 0);

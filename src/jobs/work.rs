@@ -11,9 +11,10 @@ use uuid::Uuid;
 use crate::admission::{Client, Deadline, INLINE, Kind, PoolError};
 use crate::metrics::Counted;
 use crate::store::{ChunkResult, Claim, Job, StoreError, Tenant};
+use stickslip_compute::documents::Parse as _;
 use stickslip_compute::simulation::bytes::NUMBER;
 use stickslip_compute::simulation::{Sweep, SweepResult};
-use stickslip_wire::{self as wire, PrepareAnew, SweepRequest};
+use stickslip_wire::{PrepareAnew, SweepRequest};
 
 use super::{JobError, Jobs, store_error};
 
@@ -131,7 +132,7 @@ impl Jobs {
     async fn open(&self, id: Uuid) -> Result<(Job, Arc<Sweep>), JobError> {
         let job = self.common.store.job(id).await.map_err(store_error(id))?;
         let request = self.common.store.job_request(id).await.map_err(store_error(id))?;
-        let read = move || wire::read::<SweepRequest>(request.as_bytes());
+        let read = move || SweepRequest::read(request.as_bytes());
         let checked = self.common.pool.run(INLINE, read).await?;
         let plan = |checked| async {
             let cost = Sweep::planning_cost(&checked);

@@ -3,6 +3,8 @@
 //! Counting takes a few atomic operations, no lock and no allocation: each user of a metric keeps a handle.
 //! `api/resources/metrics.rs` puts all of them on the page that Prometheus reads.
 
+pub mod process;
+
 use prometheus::{Histogram, HistogramOpts, IntCounter, IntGauge, Opts};
 
 /// Buckets for durations from a tenth of a millisecond to ten seconds, s.

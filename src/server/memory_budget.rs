@@ -1,6 +1,4 @@
-//! The largest memory use of the process, as it follows from its limits, and the memory that it may have.
-
-use sysinfo::{MemoryRefreshKind, Process, ProcessRefreshKind, ProcessesToUpdate, System, get_current_pid};
+//! The largest memory use of the process, as it follows from its limits.
 
 use crate::admission::{Capacity, STREAMS};
 
@@ -31,16 +29,4 @@ pub fn memory(connections: &ConnectionLimits, capacity: &Capacity, cache: u64, w
         .saturating_add(connection.saturating_mul(connections.most.saturating_add(SPARE_CONNECTIONS) as u64))
         .saturating_add(REQUEST.saturating_mul(requests))
         .saturating_add(STREAM * STREAMS as u64)
-}
-
-/// The memory that this process may have, bytes: that of the machine, or less where its control group (cgroup) has a
-/// limit; none if the system does not say.
-pub fn available() -> Option<u64> {
-    let mut system = System::new().ok()?;
-    system.refresh_memory_specifics(MemoryRefreshKind::nothing().with_ram());
-    let process = get_current_pid().ok()?;
-    system.refresh_processes_specifics(ProcessesToUpdate::Some(&[process]), false, ProcessRefreshKind::nothing());
-    let limits = system.process(process).and_then(Process::cgroup_limits);
-    let machine = Some(system.total_memory()).filter(|bytes| *bytes > 0);
-    limits.map(|limits| limits.total_memory).into_iter().chain(machine).min()
 }

@@ -1,5 +1,6 @@
 //! The listener and its connections: who is admitted, how long a client may take, and how the server stops.
 
+pub mod available_memory;
 pub mod connection_limits;
 pub mod connections;
 pub mod fd_limit;

@@ -5,7 +5,7 @@ use std::ops::Deref;
 
 use crate::admission::Pool;
 use crate::store::{Commits, Page};
-use stickslip_compute::computations::{DisplayOptions, OnContact};
+use stickslip_compute::computations::{ContactTask, DisplayOptions};
 use stickslip_compute::simulation::{bytes, cost};
 use stickslip_wire::subsurface::SubsurfaceTask;
 use stickslip_wire::{ContactDefinition, SessionPage, SessionReply, SubsurfaceRequest};
@@ -99,22 +99,22 @@ impl Sessions {
     ///
     /// # Errors
     /// [`SessionError`], among them [`SessionError::OtherDefinition`].
-    pub async fn compute_on<T: OnContact>(
+    pub async fn compute_on(
         &self,
         id: Uuid,
         expected: Option<ContactDefinition>,
-        task: T,
+        task: Box<dyn ContactTask>,
         shown: DisplayOptions,
         memory: &mut Reservation,
     ) -> Result<(u64, Vec<u8>), SessionError> {
         let (stop, _guard) = self.pool.deadline();
-        self.pool.resize(memory, task.bytes() + shown.bytes(task.rows())).await?;
+        self.pool.resize(memory, task.bytes(&shown)).await?;
         let (contact, sequence, state) = self.copy(id, expected, &stop).await?;
-        let cost = task.cost(contact.profile(), contact.memory_depth()).saturating_add(shown.format.cost());
+        let cost = task.cost(contact.profile(), contact.memory_depth(), &shown);
         let work = move || {
             let _state = state;
             let outcome = otlp::part!("solve").in_scope(|| task.run(contact, sequence, &stop))?;
-            Ok::<_, SessionError>(otlp::part!("write").in_scope(|| shown.write(&outcome, &stop))??)
+            Ok::<_, SessionError>(otlp::part!("write").in_scope(|| outcome.write(&shown, &stop))??)
         };
         Ok((sequence, self.pool.run(cost, work).await??))
     }

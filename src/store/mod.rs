@@ -13,6 +13,7 @@ pub mod job_store;
 mod keyed_locks;
 pub mod listeners;
 pub mod open;
+#[cfg(feature = "postgres")]
 pub mod postgres;
 mod probe;
 mod rows;
@@ -35,6 +36,7 @@ pub use job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
 pub(crate) use keyed_locks::{KeyLock, KeyedLocks};
 pub use listeners::{Listener, Listeners, StreamEvent};
 pub use open::{OpenError, backup, open, open_to_read};
+#[cfg(feature = "postgres")]
 pub use postgres::PostgresStore;
 pub use sqlite::SqliteStore;
 

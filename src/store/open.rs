@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{PostgresStore, SqliteStore, Store, sqlite};
+#[cfg(feature = "postgres")]
+use super::PostgresStore;
+use super::{SqliteStore, Store, sqlite};
 
 /// Why a store cannot be used, in one line.
 #[derive(Debug, thiserror::Error)]
@@ -19,6 +21,7 @@ pub struct OpenError {
 enum Kind<'a> {
     Memory,
     Sqlite(&'a Path),
+    #[cfg(feature = "postgres")]
     Postgres,
 }
 
@@ -48,7 +51,10 @@ fn kind(url: &str) -> Result<Kind<'_>, OpenError> {
         return Ok(Kind::Sqlite(Path::new(path)));
     }
     if url.starts_with("postgres://") || url.starts_with("postgresql://") {
+        #[cfg(feature = "postgres")]
         return Ok(Kind::Postgres);
+        #[cfg(not(feature = "postgres"))]
+        return Err(OpenError::of(url, "this program is built without PostgreSQL (the feature `postgres`)"));
     }
     Err(OpenError::of(url, "unknown kind of store, expected sqlite:PATH, postgres://… or memory:"))
 }
@@ -69,6 +75,7 @@ pub async fn open(url: &str) -> Result<Arc<dyn Store>, OpenError> {
             tracing::info!(path = %path.display(), "contacts are kept in a file");
             Ok(Arc::new(store))
         }
+        #[cfg(feature = "postgres")]
         Kind::Postgres => {
             let store = PostgresStore::open(url).await.map_err(|error| OpenError::of(url, error.to_string()))?;
             tracing::info!(address = store.address(), "contacts are kept in a database");
@@ -85,6 +92,7 @@ pub async fn open_to_read(url: &str) -> Result<Arc<dyn Store>, OpenError> {
     match kind(url)? {
         Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),
         Kind::Sqlite(path) => Ok(Arc::new(SqliteStore::open_to_read(path).map_err(|why| OpenError::new(url, why))?)),
+        #[cfg(feature = "postgres")]
         Kind::Postgres => {
             let store = PostgresStore::open_to_read(url).await;
             Ok(Arc::new(store.map_err(|error| OpenError::of(url, error.to_string()))?))
@@ -102,6 +110,7 @@ pub fn backup(url: &str, copy: &Path, progress: impl FnMut(u64, u64) + Send) -> 
     match kind(url)? {
         Kind::Memory => Err(OpenError::new(url, "a `memory:` store exists only in the process that serves it")),
         Kind::Sqlite(path) => sqlite::backup::backup(path, copy, progress).map_err(|why| OpenError::new(url, why)),
+        #[cfg(feature = "postgres")]
         Kind::Postgres => {
             Err(OpenError::of(url, "a database is backed up by its own means: pg_dump --format=custom --file=FILE URL"))
         }

@@ -13,9 +13,16 @@ use super::{Extent, Job, Measured, Receipt, Record, Reply, RequestKey, Session, 
 use stickslip_wire::{Move, Regime, SessionSummary, State};
 
 /// A type that every database reads by itself.
+#[cfg(feature = "postgres")]
 pub(super) trait Scalar: rusqlite::types::FromSql + for<'a> tokio_postgres::types::FromSql<'a> {}
+/// A column of a row in SQLite.
+#[cfg(not(feature = "postgres"))]
+pub(super) trait Scalar: rusqlite::types::FromSql {}
 
+#[cfg(feature = "postgres")]
 impl<T: rusqlite::types::FromSql + for<'a> tokio_postgres::types::FromSql<'a>> Scalar for T {}
+#[cfg(not(feature = "postgres"))]
+impl<T: rusqlite::types::FromSql> Scalar for T {}
 
 /// Reads the columns of a row one after the other.
 pub(super) trait RowReader {

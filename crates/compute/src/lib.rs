@@ -4,6 +4,8 @@
 //! [`computations`] lists the computations, each with its name, cost, table and picture, and has the moves of a
 //! contact.
 //!
+//! [`documents`] reads the bodies of calls.
+//!
 //! [`simulation`] has the parts that the computations share: solvers on their paths, stresses, warnings, sweeps,
 //! prepared profiles, costs.
 //!
@@ -13,6 +15,7 @@
 //! work is estimated in [`Nanoseconds`].
 
 pub mod computations;
+pub mod documents;
 pub mod formats;
 mod prelude;
 mod refusal;

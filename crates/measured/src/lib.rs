@@ -14,5 +14,6 @@ pub mod cycle_friction;
 pub mod import;
 mod linear;
 pub mod loops;
+mod quadratic_programme;
 mod robust;
 pub mod scan;

@@ -15,7 +15,6 @@ use http_body::Body as _;
 use stickslip_wire::ProblemDocument;
 use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
-use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use uuid::Uuid;
 
 use crate::access::Role;
@@ -175,11 +174,8 @@ fn span(request: &Request, route: &str, id: &str) -> Span {
         "error.type" = Empty,
         "stickslip.request_id" = id,
     );
-    if !span.is_disabled()
-        && let Some(parent) = otlp::parent(request.headers())
-    {
-        // It fails where there is no trace.
-        let _ = span.set_parent(parent);
+    if !span.is_disabled() {
+        otlp::set_parent(&span, request.headers());
     }
     span
 }

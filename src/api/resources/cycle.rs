@@ -61,5 +61,5 @@ pub async fn get_steady_cycle(
     let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });
     let mut faults = Faults::default();
     let task = CycleTask::of_query(drive, machine_stiffness, harmonics, density, &mut faults);
-    computations::get_of_contact(&app, id, &headers, format?, faults.done(task)?, &context).await
+    computations::get_of_contact(&app, id, &headers, format?, Box::new(faults.done(task)?), &context).await
 }

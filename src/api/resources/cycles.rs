@@ -39,7 +39,7 @@ pub async fn get_cycles(
     let (sequence, page) = app.sessions.cycles(id, last, &mut context.admission.memory.clone()).await?;
     let write = move |stop: &Deadline| {
         let (plot, table) = (|| Some(Drawing::Plot(plot(&page))), || Some(table(&page)));
-        format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok())
+        format.write(CAPACITY, &page, &plot, &table, &|| stop.check().is_ok())
     };
     let body = context.run(format.cost(), write).await??;
     let tag = formats::tag(format, &sequence.to_string());

@@ -8,6 +8,7 @@ use stickslip_mechanics::ENGINE;
 
 use super::prelude::*;
 use crate::api::request_metrics::RequestMetrics;
+use crate::metrics::process;
 use crate::store::Commits;
 
 /// The text format of Prometheus that the library writes.
@@ -74,7 +75,6 @@ fn page(app: &App, traffic: &RequestMetrics) -> prometheus::Result<String> {
         .const_label("rustc", env!("BUILD_COMPILER"))
         .const_label("commit", env!("BUILD_COMMIT"));
     gauge(build, 1)?;
-    #[cfg(target_os = "linux")]
-    page.register(Box::new(prometheus::process_collector::ProcessCollector::for_self()))?;
+    process::register(&page)?;
     TextEncoder::new().encode_to_string(&page.gather())
 }

@@ -17,7 +17,7 @@ use crate::api::formats::TableStream;
 use crate::api::query_parameters::{QueryParams, QueryReader, move_number};
 use crate::api::request_context::RequestContext;
 use stickslip_compute::Stop as _;
-use stickslip_compute::formats::{CAPACITY, Table, Unwritable};
+use stickslip_compute::formats::{CAPACITY, Table};
 use stickslip_compute::simulation::Failure;
 use stickslip_compute::simulation::bytes::OBJECT;
 
@@ -109,7 +109,7 @@ pub(super) async fn reply<T: MoveSeries>(
     let page = shown.page(&app, id, after, moves, format, &mut context.admission.memory.clone()).await?;
     let write = move |stop: &Deadline| {
         let (plot, table) = (|| Some(Drawing::Plot(T::plot(&page))), || Some(shown.table(&page)));
-        let written = format.write(CAPACITY, &page, plot, table, &|| stop.check().is_ok());
+        let written = format.write(CAPACITY, &page, &plot, &table, &|| stop.check().is_ok());
         if written.is_err() {
             stop.check().map_err(Failure::from)?;
         }
@@ -179,11 +179,11 @@ impl<T: MoveSeries> WholeTable<T> {
         let moves = self.app.sessions.history(self.id, self.after, limit).await?;
         let memory = &mut self.memory;
         let page = self.shown.page(&self.app, self.id, self.after, moves, self.format, memory).await?;
-        let mut block = self.stream.push(&self.shown.table(&page)).map_err(Unwritable::new)?;
+        let mut block = self.stream.push(&self.shown.table(&page))?;
         self.after += limit as u64;
         self.is_done = self.after >= self.end;
         if self.is_done {
-            block.extend(self.stream.finish().map_err(Unwritable::new)?);
+            block.extend(self.stream.finish());
         }
         Ok(block)
     }

@@ -2,8 +2,9 @@
 
 use super::prelude::*;
 use crate::sessions::{Expected, bytes_of_moves};
+use stickslip_compute::documents::Parse;
 use stickslip_wire::session::Advance;
-use stickslip_wire::{Document, MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
+use stickslip_wire::{MoveReply, MoveRequest, PathReply, PathRequest, RelaxReply, RelaxRequest};
 
 /// Move a contact
 ///
@@ -86,7 +87,7 @@ pub async fn relax_contact(
 }
 
 /// Moves a contact by a checked body.
-pub(super) async fn advance<T: Document<Checked = Advance>>(
+pub(super) async fn advance<T: Parse<Checked = Advance>>(
     app: &App,
     id: Uuid,
     expected: Option<Expected>,

@@ -29,5 +29,5 @@ pub async fn get_residual(
     let format = query.format?;
     let request = StressRequest { points: Some(PLOT_RADII), radii: None, x: None, fields: Some(vec![Field::Shear]) };
     let between = format.is_plot().then(|| request.check(JsonPath::Root, &mut Faults::default())).flatten();
-    computations::get_of_contact(&app, id, &headers, format, ResidualTask { between }, &context).await
+    computations::get_of_contact(&app, id, &headers, format, Box::new(ResidualTask { between }), &context).await
 }

@@ -65,5 +65,6 @@ pub async fn get_stress(
             "a table does not have the extrema: ask for them with the format `columns`, or at /contacts/{id}/residual";
         return Err(Problem::at(Code::InvalidInput, "/residual", detail));
     }
-    computations::get_of_contact(&app, id, &headers, format, StressTask { sampling, residual }, &context).await
+    let task = Box::new(StressTask { sampling, residual });
+    computations::get_of_contact(&app, id, &headers, format, task, &context).await
 }

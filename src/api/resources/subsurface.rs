@@ -36,5 +36,5 @@ pub async fn compute_subsurface_stress(
     let format = query.format?;
     let CheckedBody { body, context, .. } = request;
     let task = app.sessions.subsurface_task(id, body).await?;
-    computations::of_contact(&app, id, format, task, &context).await
+    computations::of_contact(&app, id, format, Box::new(task), &context).await
 }

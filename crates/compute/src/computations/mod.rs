@@ -1,12 +1,12 @@
 //! Computations: each takes a document and gives a document, and stores nothing. A computation is one file here and one
-//! line of [`for_each_computation`]; its route, its part of the OpenAPI document, its command and [`compute`]
-//! follow from them.
+//! line of [`entries`]; its route, its part of the OpenAPI document, its command and [`compute`] follow from them.
 //!
 //! [`OnContact`] is the same on a contact in its present state, and [`make_moves`] changes that state.
 
 mod accuracy;
 mod accuracy_in_plane;
 mod cycle;
+mod entry;
 pub mod files;
 mod fretting;
 mod loop_fit;
@@ -22,21 +22,23 @@ mod subsurface;
 mod wear;
 
 use std::borrow::Borrow;
+use std::cell::Cell;
 
 use serde::Serialize;
 use serde_json::{Value, json};
 use utoipa::ToSchema;
-use uuid::Uuid;
 
 use stickslip_mechanics::{Contact, Profile};
 use stickslip_plot::Drawing;
-use stickslip_wire::{self as wire, Code, ContactDefinition, Document, Fault, Rejection};
+use stickslip_wire::{Document, Fault};
 
-use crate::formats::{CAPACITY, Format, Table, Unwritable};
-use crate::simulation::{self, Failure};
-use crate::{Nanoseconds, Refusal, Stop};
+use crate::documents::Parse;
+use crate::formats::{CAPACITY, Format, Json, Table, Unwritable, indented};
+use crate::simulation::Failure;
+use crate::{Nanoseconds, Stop};
 
 pub use cycle::Cycle;
+pub use entry::{CheckedTask, ContactTask, Entry, OfStored, Schemas, Written, compute};
 pub use fretting::Fretting;
 pub use loop_fit::FitLoops;
 pub use moves::{Moved, dry_run_relax, make_moves, shown_states};
@@ -45,28 +47,19 @@ pub use residual::ResidualTask;
 pub use simulate::state_columns;
 pub use stress::StressTask;
 
-/// Calls `visitor` with every computation.
-pub fn for_each_computation(visitor: &mut impl Visitor) {
-    visitor.visit::<simulate::Simulate>();
-    visitor.visit::<accuracy::CompareSolvers>();
-    visitor.visit_stored::<protocol::FindProtocol>();
-    visitor.visit::<cycle::Cycle>();
-    visitor.visit::<fretting::Fretting>();
-    visitor.visit::<wear::Wear>();
-    visitor.visit::<subsurface::SubsurfaceOfPath>();
-    visitor.visit::<profile_fit::FitProfile>();
-    visitor.visit::<loop_fit::FitLoops>();
-}
-
-/// A visitor of every computation.
-pub trait Visitor {
-    /// A computation on the contact that its document defines.
-    fn visit<C: Computation>(&mut self);
-
-    /// A computation whose document may name a stored contact instead.
-    fn visit_stored<C: FromStored>(&mut self) {
-        self.visit::<C>();
-    }
+/// All computations.
+pub fn entries() -> Vec<Entry> {
+    vec![
+        Entry::of::<simulate::Simulate>(),
+        Entry::of::<accuracy::CompareSolvers>(),
+        Entry::of::<protocol::FindProtocol>(),
+        Entry::of::<cycle::Cycle>(),
+        Entry::of::<fretting::Fretting>(),
+        Entry::of::<wear::Wear>(),
+        Entry::of::<subsurface::SubsurfaceOfPath>(),
+        Entry::of::<profile_fit::FitProfile>(),
+        Entry::of::<loop_fit::FitLoops>(),
+    ]
 }
 
 /// A checked request.
@@ -77,9 +70,12 @@ pub trait Computation: Sized + 'static {
     /// The texts that its users read.
     const ABOUT: About;
     /// Its request.
-    type Request: Document + ToSchema + 'static;
+    type Request: Parse + ToSchema;
     /// Its result.
     type Outcome: Outcome + 'static;
+
+    /// Whether its request may name a stored contact in place of a definition.
+    const TAKES_STORED: bool = false;
 
     /// Complete requests as examples.
     fn examples() -> Vec<Example>;
@@ -108,18 +104,14 @@ pub trait Computation: Sized + 'static {
     /// # Errors
     /// [`Failure`] if the mechanics has no answer, or the work was stopped.
     fn run(task: Task<Self>, stop: &dyn Stop) -> Result<Self::Outcome, Failure>;
-}
 
-/// A computation whose document may name a stored contact in place of a definition.
-pub trait FromStored: Computation {
-    /// The same computation on a contact.
-    type OnContact: OnContact<Outcome = Self::Outcome>;
-
-    /// The stored contact and the definition that the request gives for it, or else the unchanged request.
+    /// The same on the stored contact that the request names.
     ///
     /// # Errors
-    /// The request, if it defines its contact itself.
-    fn stored(task: Task<Self>) -> Result<(Uuid, Option<ContactDefinition>, Self::OnContact), Task<Self>>;
+    /// The unchanged request, if it defines its contact itself.
+    fn stored(task: Task<Self>) -> Result<OfStored, Task<Self>> {
+        Err(task)
+    }
 }
 
 /// A computation on a contact in its present state, which does not change it.
@@ -154,7 +146,7 @@ pub trait OnContact: Send + 'static {
 }
 
 /// A result, and how it is written: the JSON document itself, or what a table or a picture needs beside it.
-pub trait Outcome: Borrow<<Self as Outcome>::Reply> + Send + Sized {
+pub trait Outcome: Borrow<<Self as Outcome>::Reply> + Send {
     /// The JSON document.
     type Reply: Serialize + ToSchema;
 
@@ -299,62 +291,21 @@ impl DisplayOptions {
         self.format.bytes(rows, row)
     }
 
-    /// Writes a result; only the table or picture that this needs is made.
-    ///
-    /// # Errors
-    /// [`Failure`] if `stop` has ended it; within, [`Unwritable`], which is a fault of the service.
-    pub fn write<O: Outcome>(&self, outcome: &O, stop: &dyn Stop) -> Result<Result<Vec<u8>, Unwritable>, Failure> {
-        let reply: &O::Reply = outcome.borrow();
-        if self.format == Format::Columns && self.indented {
-            return Ok(serde_json::to_vec_pretty(reply).map_err(Unwritable::new));
-        }
-        let mut drawing = if self.format.is_plot() { outcome.computed_picture(self, stop)? } else { None };
-        let (picture, table) = (|| drawing.take(), || outcome.table(self));
-        let go_on = || stop.check().is_ok();
-        let written = self.format.write(outcome.length(), reply, picture, table, &go_on);
+    /// Writes a result of about `length` bytes of JSON; only the table or picture that this needs is made.
+    fn write<'p>(
+        &self,
+        length: usize,
+        reply: &dyn Json,
+        picture: Option<Drawing>,
+        table: &dyn Fn() -> Option<Table<'p>>,
+        stop: &dyn Stop,
+    ) -> Result<Result<Vec<u8>, Unwritable>, Failure> {
+        let (picture, go_on) = (Cell::new(picture), || stop.check().is_ok());
+        let written = self.format.write(length, reply, &|| picture.take(), table, &go_on);
         if written.is_err() {
             stop.check()?;
         }
-        Ok(written)
+        let indent = self.format == Format::Columns && self.indented;
+        Ok(if indent { written.map(|text| indented(&text)) } else { written })
     }
-}
-
-/// A computation without its types: its texts for users, and its reply to the JSON text of a request.
-#[derive(Clone, Copy, Debug)]
-pub struct Entry {
-    /// The texts that users read.
-    pub about: About,
-    compute: Compute,
-}
-
-type Compute = fn(&[u8], DisplayOptions, &dyn Stop) -> Result<Vec<u8>, Refusal>;
-
-/// All computations.
-pub fn entries() -> Vec<Entry> {
-    struct Entries(Vec<Entry>);
-    impl Visitor for Entries {
-        fn visit<C: Computation>(&mut self) {
-            self.0.push(Entry { about: C::ABOUT, compute: compute_by::<C> });
-        }
-    }
-    let mut entries = Entries(Vec::new());
-    for_each_computation(&mut entries);
-    entries.0
-}
-
-/// The reply of the computation of this name to the JSON text of a request.
-///
-/// # Errors
-/// [`Refusal`].
-pub fn compute(name: &str, body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
-    let entry = entries().into_iter().find(|entry| entry.about.name == name);
-    let entry = entry.ok_or_else(|| Refusal::new(Code::NotFound, format!("the computation `{name}` is unknown")))?;
-    (entry.compute)(body, shown, stop)
-}
-
-/// The reply of a computation to the JSON text of a request.
-fn compute_by<C: Computation>(body: &[u8], shown: DisplayOptions, stop: &dyn Stop) -> Result<Vec<u8>, Refusal> {
-    let task = simulation::check(wire::parse::<C::Request>(body)?, &simulation::Anew(stop), stop)??;
-    C::check_shown(&task, &shown).map_err(|fault| Rejection::Invalid(vec![fault]))?;
-    Ok(shown.write(&C::run(task, stop)?, stop)??)
 }

@@ -1,5 +1,7 @@
 //! The formats of tables and pictures: their names, and how each is written.
 
+#[cfg(feature = "arrow")]
+mod arrow;
 mod table;
 
 use std::fmt::Display;
@@ -38,10 +40,18 @@ pub enum Format {
 
 impl Format {
     /// All formats; the first is the default.
+    #[cfg(not(feature = "arrow"))]
+    pub const ALL: [Format; 6] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Svg, Format::Png];
+    /// All formats; the first is the default.
+    #[cfg(feature = "arrow")]
     pub const ALL: [Format; 7] =
         [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow, Format::Svg, Format::Png];
 
     /// The formats of a table that has no plot.
+    #[cfg(not(feature = "arrow"))]
+    pub const TABLES: [Format; 4] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson];
+    /// The formats of a table that has no plot.
+    #[cfg(feature = "arrow")]
     pub const TABLES: [Format; 5] = [Format::Columns, Format::Rows, Format::Csv, Format::Ndjson, Format::Arrow];
 
     /// Its name in a query, and its media type.
@@ -103,22 +113,25 @@ impl Format {
     pub fn write<'p>(
         self,
         length: usize,
-        document: &impl Serialize,
-        picture: impl FnOnce() -> Option<Drawing>,
-        table: impl FnOnce() -> Option<Table<'p>>,
+        document: &dyn Json,
+        picture: &dyn Fn() -> Option<Drawing>,
+        table: &dyn Fn() -> Option<Table<'p>>,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<u8>, Unwritable> {
         if self == Format::Columns {
             // One that is known to be short is written sooner than anybody could ask.
             let is_short = length > CAPACITY && length < PIECE;
-            return if is_short { json(length, document) } else { json_while(length, document, keep_going) };
+            let question = if is_short { usize::MAX } else { PIECE };
+            let mut text = StoppableText { text: Vec::with_capacity(length), question, keep_going };
+            document.write(&mut text).map_err(Unwritable::new)?;
+            return Ok(text.text);
         }
         let none = || Unwritable::new(format_args!("the reply has no {} format", self.name()));
         if self.is_plot() {
             let picture = picture().ok_or_else(none)?;
             if self == Format::Svg { picture.svg() } else { picture.png(keep_going) }.map_err(Unwritable::new)
         } else {
-            table().ok_or_else(none)?.write(self, keep_going).map_err(Unwritable::new)
+            table().ok_or_else(none)?.write(self, keep_going)
         }
     }
 }
@@ -148,18 +161,65 @@ pub fn json(capacity: usize, value: &impl Serialize) -> Result<Vec<u8>, Unwritab
     Ok(text)
 }
 
-/// The same while `keep_going` returns true, which is asked every [`PIECE`].
-fn json_while(capacity: usize, value: &impl Serialize, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, Unwritable> {
-    let mut text = StoppableText { text: Vec::with_capacity(capacity), question: PIECE, keep_going };
-    serde_json::to_writer(&mut text, value).map_err(Unwritable::new)?;
-    Ok(text.text)
+/// A JSON document without its type.
+pub trait Json {
+    /// Writes it.
+    ///
+    /// # Errors
+    /// Why it cannot be written, or that it was ended.
+    fn write(&self, text: &mut StoppableText<'_>) -> serde_json::Result<()>;
+}
+
+impl<T: Serialize> Json for T {
+    fn write(&self, text: &mut StoppableText<'_>) -> serde_json::Result<()> {
+        serde_json::to_writer(text, self)
+    }
+}
+
+/// The text of a JSON document in lines for human readers, each member and element indented by two spaces a level.
+pub fn indented(json: &[u8]) -> Vec<u8> {
+    let mut lines = Vec::with_capacity(2 * json.len());
+    let (mut level, mut in_string, mut is_escaped) = (0_usize, false, false);
+    let mut bytes = json.iter().copied().peekable();
+    while let Some(byte) = bytes.next() {
+        if in_string {
+            lines.push(byte);
+            in_string = is_escaped || byte != b'"';
+            is_escaped = !is_escaped && byte == b'\\';
+            continue;
+        }
+        let new_line = |lines: &mut Vec<u8>, level: usize| {
+            lines.push(b'\n');
+            lines.resize(lines.len() + 2 * level, b' ');
+        };
+        if matches!(byte, b'}' | b']') {
+            level = level.saturating_sub(1);
+            if !matches!(lines.last(), Some(b'{' | b'[')) {
+                new_line(&mut lines, level);
+            }
+        }
+        lines.push(byte);
+        match byte {
+            b'"' => in_string = true,
+            b':' => lines.push(b' '),
+            b',' => new_line(&mut lines, level),
+            b'{' | b'[' => {
+                level += 1;
+                if !matches!(bytes.peek(), Some(b'}' | b']')) {
+                    new_line(&mut lines, level);
+                }
+            }
+            _ => {}
+        }
+    }
+    lines
 }
 
 /// Bytes of a text that are written between two questions whether to go on.
 const PIECE: usize = 256 * 1024;
 
 /// A text that cannot be written any more once `keep_going` has returned false.
-struct StoppableText<'a> {
+pub struct StoppableText<'a> {
     text: Vec<u8>,
     /// The length from which it is asked next.
     question: usize,
@@ -186,5 +246,25 @@ impl io::Write for StoppableText<'_> {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::indented;
+
+    #[test]
+    fn lines_are_those_of_the_library() {
+        for text in [
+            r#"{"a":[1,2.5e-3,null],"b":{},"c":[],"d":{"e":"x, {y}: [z]"},"f":[[],{}],"g\"h":"\\"}"#,
+            "[]",
+            "{}",
+            "3",
+            r#""{\"""#,
+            r#"[{"a":1},{"b":[true,false]}]"#,
+        ] {
+            let value: serde_json::Value = serde_json::from_str(text).unwrap();
+            assert_eq!(String::from_utf8(indented(text.as_bytes())).unwrap(), format!("{value:#}"), "{text}");
+        }
     }
 }

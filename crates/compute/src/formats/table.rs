@@ -2,18 +2,15 @@
 //!
 //! A cell is computed when it is written, so that the text of a large table is never in memory at once.
 
-use std::collections::HashMap;
 use std::fmt::{self, Write as _};
 use std::ops::Range;
-use std::sync::Arc;
 
-use arrow_array::{ArrayRef, Float64Array, RecordBatch, StringArray, TimestampNanosecondArray, UInt64Array};
-use arrow_ipc::writer::StreamWriter;
-use arrow_schema::{ArrowError, DataType, Field, Schema, TimeUnit};
 use jiff::Timestamp;
 use serde_json::{Number, Value};
 
-use super::Format;
+#[cfg(feature = "arrow")]
+use super::arrow;
+use super::{Format, Unwritable};
 
 /// Rows of a block.
 const BLOCK: usize = 512;
@@ -28,17 +25,17 @@ pub struct Table<'a> {
 
 /// A column of a table.
 pub struct Column<'a> {
-    name: String,
+    pub(super) name: String,
     /// Its name as JSON, which is written with every row.
     key: String,
-    unit: Option<&'static str>,
-    cells: Cells<'a>,
+    pub(super) unit: Option<&'static str>,
+    pub(super) cells: Cells<'a>,
     /// Whether cells may be missing.
-    nullable: bool,
+    pub(super) nullable: bool,
 }
 
 /// A piece of the written table.
-pub type Block = Result<Vec<u8>, ArrowError>;
+pub type Block = Result<Vec<u8>, Unwritable>;
 /// The pieces of a written table, in order.
 pub type Blocks<'a> = Box<dyn Iterator<Item = Block> + Send + 'a>;
 
@@ -94,31 +91,6 @@ impl<'a> Column<'a> {
         };
         written.unwrap_or_else(|| text.write_str(none))
     }
-
-    fn field(&self) -> Field {
-        let data_type = match self.cells {
-            Cells::Numbers(_) => DataType::Float64,
-            Cells::Counts(_) => DataType::UInt64,
-            Cells::Times(_) => DataType::Timestamp(TimeUnit::Nanosecond, Some("UTC".into())),
-            Cells::Words(_) => DataType::Utf8,
-        };
-        let unit = self.unit.map(|unit| ("unit".to_owned(), unit.to_owned()));
-        Field::new(&self.name, data_type, self.nullable).with_metadata(HashMap::from_iter(unit))
-    }
-
-    fn array(&self, rows: Range<usize>) -> ArrayRef {
-        match &self.cells {
-            Cells::Numbers(at) => {
-                Arc::new(rows.map(|row| at(row).and_then(|number| number.as_f64())).collect::<Float64Array>())
-            }
-            Cells::Counts(at) => Arc::new(rows.map(at).collect::<UInt64Array>()),
-            Cells::Times(at) => {
-                let since = |row| i64::try_from(at(row)?.as_nanosecond()).ok();
-                Arc::new(rows.map(since).collect::<TimestampNanosecondArray>().with_timezone("UTC"))
-            }
-            Cells::Words(at) => Arc::new(rows.map(at).collect::<StringArray>()),
-        }
-    }
 }
 
 impl<'a> Table<'a> {
@@ -135,14 +107,14 @@ impl<'a> Table<'a> {
     /// All of the table in a format, while `keep_going` returns true, which is asked at each block.
     ///
     /// # Errors
-    /// The error of the Arrow library, none for a table whose columns have different names; or that it was ended.
-    pub fn write(self, format: Format, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, ArrowError> {
+    /// [`Unwritable`], also because `keep_going` has returned false.
+    pub fn write(self, format: Format, keep_going: &dyn Fn() -> bool) -> Result<Vec<u8>, Unwritable> {
         // Arrow has one batch of all rows.
         let size = if format == Format::Arrow { self.rows.max(1) } else { BLOCK };
         let mut text = Vec::new();
         for block in self.in_blocks(format, size) {
             if !keep_going() {
-                return Err(ArrowError::ExternalError("it was ended".into()));
+                return Err(Unwritable::new("it was ended"));
             }
             text.append(&mut block?);
         }
@@ -162,7 +134,7 @@ impl<'a> Table<'a> {
             // Arrow alone has something to end with.
             let pieces = blocks + usize::from(format == Format::Arrow);
             return Box::new((0..pieces).map(move |block| {
-                if block < blocks { stream.push_rows(&self, range(block)) } else { stream.finish() }
+                if block < blocks { stream.push_rows(&self, range(block)) } else { Ok(stream.finish()) }
             }));
         }
         let pieces = if format == Format::Columns { blocks * self.columns.len() } else { blocks };
@@ -233,57 +205,43 @@ impl<'a> Table<'a> {
 pub struct TableStream {
     format: Format,
     begun: bool,
-    /// Schema and writer of [`Format::Arrow`], from the first rows on.
-    arrow: Option<(Arc<Schema>, StreamWriter<Vec<u8>>)>,
 }
 
 impl TableStream {
     /// An empty one, in a format that [is read row by row](Format::is_stream).
     pub fn new(format: Format) -> TableStream {
-        TableStream { format, begun: false, arrow: None }
+        TableStream { format, begun: false }
     }
 
     /// The next rows, after what the format begins with.
     ///
     /// # Errors
-    /// The error of the Arrow library; none for columns of different names.
+    /// [`Unwritable`] if Arrow cannot hold them.
     pub fn push(&mut self, table: &Table<'_>) -> Block {
         self.push_rows(table, 0..table.rows)
     }
 
     fn push_rows(&mut self, table: &Table<'_>, rows: Range<usize>) -> Block {
+        let is_first = !std::mem::replace(&mut self.begun, true);
+        #[cfg(feature = "arrow")]
         if self.format == Format::Arrow {
-            let (schema, writer) = match &mut self.arrow {
-                Some(begun) => begun,
-                none => {
-                    let schema = Arc::new(Schema::new(table.columns.iter().map(Column::field).collect::<Vec<_>>()));
-                    let writer = StreamWriter::try_new(Vec::new(), &schema)?;
-                    none.insert((schema, writer))
-                }
-            };
-            let arrays = table.columns.iter().map(|column| column.array(rows.clone()));
-            writer.write(&RecordBatch::try_new(Arc::clone(schema), arrays.collect())?)?;
-            return Ok(std::mem::take(writer.get_mut()));
+            let mut bytes = if is_first { arrow::schema(&table.columns) } else { Vec::new() };
+            bytes.append(&mut arrow::batch(&table.columns, rows)?);
+            return Ok(bytes);
         }
-        let mut text = String::new();
-        if self.format == Format::Csv && !self.begun {
-            text = table.csv_names();
-        }
-        self.begun = true;
+        let mut text = if self.format == Format::Csv && is_first { table.csv_names() } else { String::new() };
         // Writing to a string cannot fail.
         let _ = table.write_cells(rows, self.format, &mut text);
         Ok(text.into_bytes())
     }
 
     /// What the format ends with.
-    ///
-    /// # Errors
-    /// As [`TableStream::push`].
-    pub fn finish(&mut self) -> Block {
-        let Some((_, writer)) = &mut self.arrow else { return Ok(Vec::new()) };
-        // A reader detects a truncated stream by the absence of this mark.
-        writer.finish()?;
-        Ok(std::mem::take(writer.get_mut()))
+    pub fn finish(&mut self) -> Vec<u8> {
+        #[cfg(feature = "arrow")]
+        if self.format == Format::Arrow && self.begun {
+            return arrow::END.to_vec();
+        }
+        Vec::new()
     }
 }
 

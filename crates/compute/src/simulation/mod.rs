@@ -20,7 +20,7 @@ mod trace;
 mod warnings;
 
 pub use plane::{follow_in_plane, simulate_any};
-pub use prepare::{Anew, check, cost_of_preparation};
+pub use prepare::{Anew, check, check_parsed, cost_of_preparation};
 pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
 pub use run::{
     contact, cycle_moves, equal_peaks, follow, refused_at, residual, sampled, simulate, spring_foundation, stresses,

@@ -1,9 +1,11 @@
 //! Checking a document as work: what prepares its profile is estimated, may end, and counts.
 
+use std::any::Any;
 use std::time::Duration;
 
 use stickslip_wire::DefinedProfile;
 
+use crate::documents::Parsed;
 use crate::prelude::*;
 
 /// Prepares every profile anew, until the flag is raised.
@@ -38,9 +40,30 @@ pub fn check<T: Document>(
     profiles: &dyn Prepare,
     stop: &dyn Stop,
 ) -> Result<Result<T::Checked, Rejection>, Failure> {
-    let timer = Timer::start(stop);
     let pointer = document.profile().map_or("", |defined| defined.pointer);
-    let checked = document.check_with(profiles);
+    counted(pointer, stop, || document.check_with(profiles))
+}
+
+/// The same of a document without its type.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_parsed(
+    document: Box<dyn Parsed>,
+    profiles: &dyn Prepare,
+    stop: &dyn Stop,
+) -> Result<Result<Box<dyn Any + Send>, Rejection>, Failure> {
+    let pointer = document.profile().map_or("", |defined| defined.pointer);
+    counted(pointer, stop, || document.check(profiles))
+}
+
+fn counted<T>(
+    pointer: &str,
+    stop: &dyn Stop,
+    check: impl FnOnce() -> Result<T, Rejection>,
+) -> Result<Result<T, Rejection>, Failure> {
+    let timer = Timer::start(stop);
+    let checked = check();
     if checked.is_err() {
         stop.check().map_err(|interrupted| Failure::interrupted(interrupted, pointer))?;
     }

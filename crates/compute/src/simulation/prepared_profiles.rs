@@ -1,5 +1,6 @@
 //! Prepared profiles, which contacts and requests share: found by a digest of their numbers.
 
+use std::any::Any;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -8,7 +9,8 @@ use stickslip_mechanics::Elasticity;
 use stickslip_wire::DefinedProfile;
 use stickslip_wire::profile::{SumProfile, TabulatedProfile};
 
-use super::{check, cost_of_preparation};
+use super::{check_parsed, cost_of_preparation};
+use crate::documents::Parsed;
 use crate::prelude::*;
 
 /// The key of a prepared profile: a digest.
@@ -46,7 +48,7 @@ impl<S: Stop> Profiles<S> {
     ///
     /// # Errors
     /// [`Cause::Preparation`](super::Cause) if it cannot end in time.
-    pub fn cost<T: Document>(&self, document: &T) -> Result<Nanoseconds, Failure> {
+    pub fn cost(&self, document: &dyn Parsed) -> Result<Nanoseconds, Failure> {
         document.profile().map_or(Ok(0), |defined| self.cost_of(&defined))
     }
 
@@ -66,9 +68,9 @@ impl<S: Stop> Profiles<S> {
     /// Checks a document, and has the flag count the time that it takes.
     ///
     /// # Errors
-    /// As [`check`].
-    pub fn check<T: Document>(&self, document: T) -> Result<Result<T::Checked, Rejection>, Failure> {
-        check(document, self, &self.stop)
+    /// As [`check_parsed`].
+    pub fn check(&self, document: Box<dyn Parsed>) -> Result<Result<Box<dyn Any + Send>, Rejection>, Failure> {
+        check_parsed(document, self, &self.stop)
     }
 }
 

@@ -4,6 +4,7 @@
 mod accuracy;
 mod cycle;
 mod cycles_path;
+mod defaults;
 mod fit;
 mod fretting;
 mod json;
@@ -19,6 +20,7 @@ mod protocols;
 mod simulate;
 mod subsurface;
 mod sweeps;
+mod tables;
 mod warnings;
 mod wear;
 

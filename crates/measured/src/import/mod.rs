@@ -20,6 +20,7 @@ mod preview;
 mod scan;
 mod sheet;
 mod source;
+#[cfg(feature = "spreadsheets")]
 mod spreadsheet;
 mod units;
 

@@ -3,7 +3,9 @@
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 
 use super::error::ImportError;
-use super::{kinds, spreadsheet};
+use super::kinds;
+#[cfg(feature = "spreadsheets")]
+use super::spreadsheet;
 
 /// How a zip archive begins.
 const ZIP: &[u8] = b"PK\x03\x04";
@@ -28,7 +30,10 @@ impl Source {
     /// [`ImportError`] if it is a file of another kind, with the way to read it.
     pub(super) fn of(bytes: &[u8], sheet: Option<&str>) -> Result<Source, ImportError> {
         if bytes.starts_with(ZIP) {
+            #[cfg(feature = "spreadsheets")]
             return spreadsheet::read(bytes, sheet);
+            #[cfg(not(feature = "spreadsheets"))]
+            return Err(ImportError::of_file("this program is built without spreadsheets: save the file as CSV"));
         }
         if let Some(refusal) = kinds::refusal(bytes) {
             return Err(ImportError::of_file(refusal));

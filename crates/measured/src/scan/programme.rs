@@ -1,13 +1,13 @@
 //! The quadratic programme: the penalised fit among the curves whose g rises.
 //!
 //! Where g fell, the contact would be a ring. g' is linear in the curvatures, so that g' >= 0 at many radii makes a
-//! convex programme, with one solution: Clarabel's interior point method (Goulart & Chen 2024) finds it.
+//! convex programme, with one solution ([`quadratic_programme`]).
 
-use clarabel::algebra::CscMatrix;
-use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus};
+use nalgebra::{DMatrix, DVector};
 
 use super::curve::g_slopes;
 use super::normal_equations::{Equations, Solution};
+use crate::quadratic_programme;
 
 /// Radii in each interval at which g must rise. After a fall of the curvature, g' falls steepest at once.
 const PLACES: [f64; 3] = [0.03, 0.3, 1.0];
@@ -28,34 +28,19 @@ pub(super) fn constrained(equations: &Equations, plain: &Solution, parabola: f64
     let size = matrix.nrows();
     // Unknowns in units of their own make all diagonals one.
     let units: Vec<f64> = (0..size).map(|index| 1.0 / matrix[(index, index)].sqrt()).collect();
-    let upper = (0..size).flat_map(|column| (0..=column).map(move |row| (row, column)));
-    let (at, (across, values)): (Vec<usize>, (Vec<usize>, Vec<f64>)) =
-        upper.map(|(row, column)| (row, (column, matrix[(row, column)] * units[row] * units[column]))).unzip();
-    let quadratic = CscMatrix::new_from_triplets(size, size, at, across, values);
+    let quadratic = DMatrix::from_fn(size, size, |row, column| matrix[(row, column)] * units[row] * units[column]);
     // The step from the plain solution, which has no linear term: the digits of the heights do not enter.
-    let linear = vec![0.0; size];
-    let (mut at, mut across, mut values, mut bounds) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut constraints = DMatrix::zeros(rows.len(), size);
+    let mut bounds = DVector::zeros(rows.len());
     for (index, (_, row)) in rows.iter().enumerate() {
         let scaled: Vec<f64> = row.iter().zip(&units).map(|(a, unit)| a * unit).collect();
         let length = scaled.iter().map(|value| value * value).sum::<f64>().sqrt();
-        for (column, value) in scaled.iter().enumerate().filter(|(_, value)| value.abs() > 0.0) {
-            at.push(index);
-            across.push(column);
-            values.push(-value / length);
-        }
+        scaled.iter().enumerate().for_each(|(column, value)| constraints[(index, column)] = -value / length);
         let now: f64 = row.iter().zip(&plain.unknowns).map(|(a, k)| a * (k + parabola)).sum();
-        bounds.push(now / length);
+        bounds[index] = now / length;
     }
-    let constraints = CscMatrix::new_from_triplets(rows.len(), size, at, across, values);
-    let largest = bounds.iter().fold(f64::MIN_POSITIVE, |largest, bound| bound.abs().max(largest));
-    bounds.iter_mut().for_each(|bound| *bound /= largest);
-    let cones = [NonnegativeConeT(rows.len())];
-    let settings = DefaultSettingsBuilder::default().verbose(false).max_iter(100).build().ok()?;
-    let mut solver = DefaultSolver::new(&quadratic, &linear, &constraints, &bounds, &cones, settings).ok()?;
-    solver.solve();
-    if !matches!(solver.solution.status, SolverStatus::Solved | SolverStatus::AlmostSolved) {
-        return None;
-    }
-    let steps = solver.solution.x.iter().zip(&units).map(|(step, unit)| step * unit * largest);
+    let largest = bounds.amax().max(f64::MIN_POSITIVE);
+    let steps = quadratic_programme::least(&quadratic, &constraints, &(bounds / largest))?;
+    let steps = steps.iter().zip(&units).map(|(step, unit)| step * unit * largest);
     Some(plain.unknowns.iter().zip(steps).map(|(plain, step)| plain + step).collect())
 }

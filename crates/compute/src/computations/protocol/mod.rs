@@ -2,13 +2,11 @@
 
 mod design;
 
-use uuid::Uuid;
-
 use stickslip_mechanics::range;
 use stickslip_wire::protocol::{Aim, ProtocolSubject, ProtocolTask};
 use stickslip_wire::{ProtocolReply, ProtocolRequest};
 
-use super::FromStored;
+use super::OfStored;
 use crate::computations::prelude::*;
 use crate::simulation::bytes::of_records;
 use crate::simulation::cost::MOVE_COST;
@@ -37,6 +35,8 @@ impl Computation for FindProtocol {
         reply: "The path, and the stress that remains",
         ..About::DOCUMENT
     };
+
+    const TAKES_STORED: bool = true;
 
     type Request = ProtocolRequest;
     type Outcome = ProtocolReply;
@@ -94,14 +94,12 @@ impl Computation for FindProtocol {
         }
         protocol(&Subject { contact, first: first.or(Some(full)), setup: Some(setup) }, &task, stop)
     }
-}
 
-impl FromStored for FindProtocol {
-    type OnContact = ProtocolTask;
-
-    fn stored((subject, task): Task<Self>) -> Result<(Uuid, Option<ContactDefinition>, ProtocolTask), Task<Self>> {
+    fn stored((subject, task): Task<Self>) -> Result<OfStored, Task<Self>> {
         match subject {
-            ProtocolSubject::Living(id, definition) => Ok((id, definition.map(|definition| *definition), task)),
+            ProtocolSubject::Living(id, definition) => {
+                Ok((id, definition.map(|definition| *definition), Box::new(task)))
+            }
             virgin @ ProtocolSubject::Virgin(..) => Err((virgin, task)),
         }
     }

@@ -1,8 +1,6 @@
-//! Traces for OpenTelemetry: a span for each request, with spans of its parts, sent to a collector by OTLP over HTTP.
-//!
-//! All spans have the target [`SPANS`]. Without a collector no filter admits it, and a span costs a check of a flag.
-//! With one, spans wait in the bounded queue of a batch processor that has a thread of its own: a span that finds the
-//! queue full is lost, so that a slow or unreachable collector costs spans, but neither requests nor memory.
+//! Spans are sent by OTLP over HTTP. They wait in the bounded queue of a batch processor that has a thread of its own:
+//! a span that finds the queue full is lost, so that a slow or unreachable collector costs spans, but neither requests
+//! nor memory.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -29,23 +27,13 @@ use rustls::{ClientConfig, RootCertStore};
 use tokio::runtime::Handle;
 use tokio::time::timeout;
 use tracing::subscriber::Interest;
-use tracing::{Metadata, Subscriber};
+use tracing::{Metadata, Span, Subscriber};
+use tracing_opentelemetry::OpenTelemetrySpanExt as _;
 use tracing_subscriber::Layer;
 use tracing_subscriber::filter::{LevelFilter, dynamic_filter_fn};
 use tracing_subscriber::registry::LookupSpan;
 
-/// The target of all spans that are sent; the log leaves it out.
-pub const SPANS: &str = "stickslip::spans";
-/// The name of the span of a request, the parent of the others.
-pub const REQUEST: &str = "request";
-
-/// A span of a part of a request, such as `store`.
-macro_rules! part {
-    ($name:literal) => {
-        tracing::info_span!(target: $crate::otlp::SPANS, $name)
-    };
-}
-pub(crate) use part;
+use super::{REQUEST, SPANS};
 
 /// Spans that may wait.
 const QUEUE: usize = 8_192;
@@ -171,7 +159,16 @@ async fn exchange(http: Http, request: Request<Bytes>) -> Result<Response<Bytes>
     Ok(Response::from_parts(parts, Limited::new(body, ANSWER).collect().await?.to_bytes()))
 }
 
-/// The span that a request belongs to, by its `traceparent` (W3C Trace Context); none if that is malformed.
+/// Puts the span of a request below that of its caller, which `traceparent` names (W3C Trace Context); not if that is
+/// malformed.
+pub fn set_parent(span: &Span, headers: &HeaderMap) {
+    if let Some(parent) = parent(headers) {
+        // It fails where there is no trace.
+        let _ = span.set_parent(parent);
+    }
+}
+
+/// The span that a request belongs to, by its `traceparent`; none if that is malformed.
 pub fn parent(headers: &HeaderMap) -> Option<Context> {
     let header = headers.get("traceparent")?.to_str().ok()?;
     // The library takes numbers of any length.
