@@ -1,6 +1,7 @@
 //! In a program without the feature `otlp`, nothing is sent.
 
 use std::convert::Infallible;
+use std::time::Duration;
 
 use axum::http::HeaderMap;
 use tokio::runtime::Handle;
@@ -20,7 +21,7 @@ pub fn layer(_endpoint: &str, _runtime: Handle) -> Result<(Identity, Exporter), 
 
 impl Exporter {
     /// As there is none, nothing waits.
-    pub fn finish(self) {
+    pub fn finish(self, _patience: Duration) {
         match self.0 {}
     }
 }

@@ -10,6 +10,7 @@ mod clock;
 pub mod commits;
 pub mod idempotency;
 pub mod job_store;
+#[cfg(feature = "postgres")]
 mod keyed_locks;
 pub mod listeners;
 pub mod open;
@@ -33,6 +34,7 @@ pub use clock::Clock;
 pub use commits::Commits;
 pub use idempotency::IdempotentRequest;
 pub use job_store::{ChunkResult, Claim, Job, JobLimits, JobStore};
+#[cfg(feature = "postgres")]
 pub(crate) use keyed_locks::{KeyLock, KeyedLocks};
 pub use listeners::{Listener, Listeners, StreamEvent};
 pub use open::{OpenError, backup, open, open_to_read};

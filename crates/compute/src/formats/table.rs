@@ -28,9 +28,11 @@ pub struct Column<'a> {
     pub(super) name: String,
     /// Its name as JSON, which is written with every row.
     key: String,
+    #[cfg_attr(not(feature = "arrow"), expect(dead_code, reason = "Arrow alone has units"))]
     pub(super) unit: Option<&'static str>,
     pub(super) cells: Cells<'a>,
     /// Whether cells may be missing.
+    #[cfg_attr(not(feature = "arrow"), expect(dead_code, reason = "Arrow alone has types"))]
     pub(super) nullable: bool,
 }
 

@@ -41,6 +41,7 @@ const BEGINNINGS: [(&[u8], &str, &str); 32] = [
 ];
 
 /// Members by which an archive is known, what it then is, and how it can be read.
+#[cfg(feature = "spreadsheets")]
 const MEMBERS: [(&str, &str, &str); 5] = [
     ("main.xml", "an ISO 25178-72 file (.x3p)", PYTHON),
     ("recipe.txt", "a measurement of a Sensofar profiler (.plux)", PYTHON),
@@ -77,6 +78,7 @@ pub(super) fn binary(bytes: &[u8]) -> Option<String> {
 }
 
 /// Why an archive with these members is not read.
+#[cfg(feature = "spreadsheets")]
 pub(super) fn archive<'a>(names: impl Iterator<Item = &'a str> + Clone) -> String {
     let has = |member: &str| names.clone().any(|name| name == member);
     let found = MEMBERS.iter().find(|(member, ..)| has(member));
