@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use futures::future::join_all;
+use tokio::sync::watch;
 use tokio::time::{sleep, timeout};
 use uuid::Uuid;
 
@@ -47,6 +48,8 @@ pub struct Recorder {
     clock: AtomicU64,
     /// Requests that are done, whatever came of them.
     pub done: AtomicU64,
+    /// Whether clients wait with their next request: the store is known to be out of reach.
+    pub paused: watch::Sender<bool>,
     /// Contacts that all clients know, oldest first.
     contacts: Mutex<Vec<Uuid>>,
     histories: Mutex<HashMap<Uuid, History>>,
@@ -72,6 +75,7 @@ impl Recorder {
             seed,
             clock: AtomicU64::new(0),
             done: AtomicU64::new(0),
+            paused: watch::Sender::new(false),
             contacts: Mutex::default(),
             histories: Mutex::default(),
             pasts: Mutex::default(),
@@ -157,6 +161,7 @@ impl Recorder {
 
     /// Sends a request, and records it with its reply; `None` if that is lost.
     async fn attempt(self: &Arc<Self>, replica: u64, id: Uuid, request: &Request, fate: Fate) -> Option<Reply> {
+        self.paused.subscribe().wait_for(|is_paused| !is_paused).await.unwrap();
         let place = self.called(id, request);
         let (recorder, sent) = (Arc::clone(self), request.clone());
         let serve = async move { recorder.until_sent(replica, id, &sent).await };

@@ -2,6 +2,8 @@
 //! instant between its call and its return, so that one after the other they give the replies that were recorded.
 //! `todc-utils` searches for such an order (Wing & Gong 1993, Lowe 2017).
 
+use std::collections::HashSet;
+
 use todc_utils::linearizability::WGLChecker;
 use todc_utils::linearizability::history::{Action, History as Actions};
 use todc_utils::specifications::Specification;
@@ -65,7 +67,14 @@ impl History {
     /// Whether some order of the operations gives their replies. One of unknown outcome may have happened at any time
     /// after its call, or not at all: that is after all others, where it changes nothing that anybody has seen.
     fn is_linearizable(&self) -> bool {
-        let changes = |call: &&Call| call.returned.is_some() || call.request.changes();
+        let labels: HashSet<&str> = self.calls.iter().filter_map(|call| call.returned.as_ref()?.1.label()).collect();
+        // A label that nobody has seen explains no reply, unless its request comes again with its key.
+        let is_unseen = |request: &Request| match &request.operation {
+            Operation::Rename(label) => request.key.is_none() && !labels.contains(label.as_str()),
+            _ => false,
+        };
+        let may_change = |request: &Request| request.changes() && !is_unseen(request);
+        let changes = |call: &&Call| call.returned.is_some() || may_change(&call.request);
         let initial = self.initial.clone().with_replies(&self.calls);
         let known = self.calls.iter().filter(|call| call.returned.is_some()).count();
         let begin = Step::Begin(initial, known);
@@ -99,6 +108,16 @@ impl History {
         let seen = self.calls.iter().filter(|call| call.called < instant).cloned();
         let cut = seen.map(|call| Call { returned: call.returned.filter(|(end, _)| *end <= instant), ..call });
         History { initial: self.initial.clone(), calls: cut.collect() }
+    }
+}
+
+impl Reply {
+    /// The label that it shows.
+    fn label(&self) -> Option<&str> {
+        match self {
+            Reply::Contact(summary) | Reply::Forked { summary, .. } => summary.label.as_deref(),
+            _ => None,
+        }
     }
 }
 

@@ -139,7 +139,10 @@ impl Scene {
             (Accident::CrashedDatabase, Store::Database(cluster, _)) => {
                 cluster.crash();
                 is_noticed.await;
+                // However long that takes, few requests have an unknown outcome.
+                recorder.paused.send_replace(true);
                 cluster.resume();
+                recorder.paused.send_replace(false);
             }
             (Accident::LostDatabaseConnections, Store::Database(cluster, _)) => {
                 let end = "SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE application_name = 'stickslip'";

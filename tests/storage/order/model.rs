@@ -79,9 +79,14 @@ pub enum Reply {
     NotFound,
 }
 
-/// Moves that replies of a history have shown, by their numbers. It is the same in all states of the history.
+/// What the replies of a history have shown. It is the same in all states of the history.
 #[derive(Clone, Debug, Default)]
-pub struct Shown(Arc<BTreeMap<u64, Made>>);
+pub struct Shown {
+    /// Moves by their numbers.
+    moves: Arc<BTreeMap<u64, Made>>,
+    /// How many there were when everything else had been answered.
+    last: Option<u64>,
+}
 
 impl PartialEq for Shown {
     fn eq(&self, _: &Shown) -> bool {
@@ -200,7 +205,11 @@ impl Contact {
         let mut after = self.clone();
         let reply = after.serve(request);
         let mut new = (self.sequence() + 1..).zip(&after.moves[self.moves.len()..]);
-        if new.any(|(number, made)| after.shown.0.get(&number).is_some_and(|shown| shown != made)) {
+        if new.any(|(number, made)| after.shown.moves.get(&number).is_some_and(|shown| shown != made)) {
+            return None;
+        }
+        // No move is ever undone, so that none beyond the last one shown comes before a reply.
+        if after.shown.last.is_some_and(|last| after.sequence() > last) {
             return None;
         }
         let Some(seen) = seen else { return Some(after) };
@@ -227,6 +236,17 @@ impl Contact {
                 _ => {}
             }
         }
-        Contact { shown: Shown(Arc::new(shown)), ..self }
+        Contact { shown: Shown { moves: Arc::new(shown), last: last_shown(calls) }, ..self }
+    }
+}
+
+/// How many moves a read has shown that began when all other replies had come.
+fn last_shown(calls: &[Call]) -> Option<u64> {
+    let answered = calls.iter().filter_map(|call| call.returned.as_ref().map(|(end, reply)| (call, end, reply)));
+    let (last, end, reply) = answered.clone().max_by_key(|(call, ..)| call.called)?;
+    let is_alone = answered.filter(|(_, other, _)| *other != end).all(|(_, other, _)| *other < last.called);
+    match (&last.request.operation, reply) {
+        (Operation::Read, Reply::Contact(summary)) if is_alone => Some(summary.sequence),
+        _ => None,
     }
 }

@@ -165,7 +165,7 @@ async fn send(client: &Client, id: Uuid, request: &Request) -> Result<Reply, NoR
             ("idempotency_key_reused", _) => Ok(Reply::KeyReused),
             ("contact_not_found", _) => Ok(Reply::NotFound),
             ("invalid_input", Operation::Fork(_)) => Ok(Reply::NoSuchMove),
-            ("overloaded" | "conflict", _) => Err(NoReply::NothingDone),
+            ("overloaded" | "conflict" | "quota_exceeded", _) => Err(NoReply::NothingDone),
             ("storage_unavailable", _) => Err(NoReply::Unavailable),
             ("stopping", _) => Err(NoReply::Unknown),
             _ => panic!("{request:?}: {error}"),
