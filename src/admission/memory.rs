@@ -65,11 +65,7 @@ pub enum Class {
 impl Class {
     /// The class of so many bytes, if they need one.
     pub fn of(bytes: usize) -> Option<Class> {
-        match bytes {
-            ..=FREE => None,
-            ..=LARGEST_BODY => Some(Class::Medium),
-            _ => Some(Class::Large),
-        }
+        (bytes > FREE).then_some(if bytes <= LARGEST_BODY { Class::Medium } else { Class::Large })
     }
 
     /// Bytes of a place.
