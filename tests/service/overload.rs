@@ -219,7 +219,8 @@ async fn many_moves_of_one_contact_queue_up_to_a_bound() {
     let contact = service.client.create(&create(), &Options::default()).await.unwrap().id;
     let mut long = TcpStream::connect(service.address).await.unwrap();
     long.write_all(post(&format!("/contacts/{contact}/path"), &long_path().to_string()).as_bytes()).await.unwrap();
-    let look = get(&format!("/contacts/{contact}"));
+    // It waits for its turn, which reads of the contact do not.
+    let look = get(&format!("/contacts/{contact}/friction"));
     until("the contact is at work", async || !served(&service, FLOOD, &look).await).await;
     let step = post(&format!("/contacts/{contact}/move"), r#"{"displacement": 1e-8}"#);
     let answers = join_all((0..40).map(|_| service.ask(FLOOD, &step))).await;
