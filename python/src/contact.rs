@@ -17,7 +17,7 @@ use stickslip_compute::{Flag, Stop};
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::Elasticity;
 use stickslip_wire::Code;
-use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::definition::FrictionSetup;
 use stickslip_wire::session::{Advance, Creation};
 use stickslip_wire::{
     self as wire, ContactDefinition, CreateRequest, CycleRequest, Document as _, Faults, JsonPath, Move, MoveReply,
@@ -43,7 +43,7 @@ pub struct Contact {
     id: Uuid,
     label: Option<String>,
     definition: ContactDefinition,
-    setup: SharedSetup,
+    setup: FrictionSetup,
     pub(super) state: mechanics::Contact,
     /// Every move with its tolerance, and how many there were before each call that made any.
     pub(super) made: Vec<(Move, f64)>,

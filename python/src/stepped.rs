@@ -147,7 +147,8 @@ impl<C: Clone + Send + Sync> Stepped<C> {
 /// What the JSON text of a definition means.
 pub fn setup(body: &[u8], stop: &dyn Stop) -> Result<SharedSetup, Refusal> {
     let Creation { setup, .. } = simulation::check(CreateRequest::parse(body)?, &Anew(stop), stop)??;
-    Ok(setup)
+    let refused = simulation::refused_at("", setup.preload);
+    Ok(setup.coulomb("an array of contacts").map_err(refused)?)
 }
 
 /// The numbers of an array, so many for each contact, or the same for all; they are read once, so that a caller who

@@ -41,6 +41,7 @@ MEMBERS: dict[str, str] = {
     "radii": "m",
     "radius": "m",
     "reference_length": "m",
+    "shear_strength": "Pa",
     "slope": "1",
     "stiffness": "N/m",
     "strength": "Pa",

@@ -930,6 +930,10 @@ class DefinitionMembers(TypedDict, total=False):
     """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     and under a constant load.
     """
+    shear_strength: Quantity | None
+    """Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load
+    must stay constant from the first tangential move on.
+    """
 
 Centre: TypeAlias = Union[
     "Auto",

@@ -6,7 +6,7 @@ use crate::store::{CONTACT_BYTES, Reply, Session};
 use stickslip_compute::formats;
 use stickslip_compute::simulation::{self, bytes, present_warnings};
 use stickslip_mechanics::closed_cycles::CycleLog;
-use stickslip_wire::definition::SharedSetup;
+use stickslip_wire::definition::FrictionSetup;
 use stickslip_wire::limits::Limited as _;
 use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
 
@@ -68,7 +68,7 @@ pub(super) struct Derived {
 impl LoadedSession {
     /// A contact at its preload, and what follows from its definition. Whatever the sequence of `session` is, the state
     /// is that before the first move.
-    pub(super) fn start(session: Session, setup: SharedSetup) -> Result<LoadedSession, simulation::Failure> {
+    pub(super) fn start(session: Session, setup: FrictionSetup) -> Result<LoadedSession, simulation::Failure> {
         let contact = simulation::contact(setup, "")?;
         let derived = Derived { summary: contact.initial_summary().into(), warnings: present_warnings(&contact) };
         let derived = Arc::new(derived);
@@ -94,7 +94,7 @@ impl LoadedSession {
     pub(super) fn of_stored(session: Session, profiles: &dyn Prepare) -> Result<LoadedSession, String> {
         let mut faults = Faults::default();
         session.definition.check_limits(JsonPath::Root, &mut faults);
-        let setup = session.definition.check(JsonPath::Root, profiles, &mut faults);
+        let setup = session.definition.check_any(JsonPath::Root, profiles, &mut faults);
         let setup = faults.done(setup).map_err(|error| error.to_string())?;
         LoadedSession::start(session, setup).map_err(|error| error.to_string())
     }

@@ -2,7 +2,7 @@
 
 pub(crate) use serde_json::{Value, json};
 pub(crate) use stickslip_mechanics::{Contact, Profile};
-pub(crate) use stickslip_wire::definition::SharedSetup;
+pub(crate) use stickslip_wire::definition::{FrictionSetup, SharedSetup};
 pub(crate) use stickslip_wire::reply::finite;
 pub(crate) use stickslip_wire::simulate::Simulation;
 pub(crate) use stickslip_wire::{

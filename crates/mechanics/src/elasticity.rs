@@ -138,6 +138,11 @@ impl Elasticity {
         Elasticity { g_star: self.e_star, ..self }
     }
 
+    /// With G* in place of E* as well: the tangential problem as one of pressing.
+    pub(crate) fn tangential(self) -> Elasticity {
+        Elasticity { e_star: self.g_star, ..self }
+    }
+
     /// Reduced modulus E*, Pa.
     #[must_use]
     pub fn e_star(&self) -> f64 {

@@ -93,7 +93,7 @@ pub use contact::Contact;
 pub use contact::accuracy::ErrorEstimate;
 pub use contact::normal::{ContactSummary, Preload};
 pub use contact::packed::ENGINE;
-pub use contact::state::{Move, Normal, Regime, Setup, State, Tangential};
+pub use contact::state::{Friction, Move, Normal, Regime, Setup, State, Tangential};
 pub use elasticity::{Body, Elasticity};
 pub use indenter::Indenter;
 pub use numerics::double_double::DoubleDouble;

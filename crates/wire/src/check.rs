@@ -145,14 +145,19 @@ impl Faults {
     }
 
     /// Refuses what is asked for at this place if it needs a stress and the contact is known by its load curve alone.
-    pub fn needs_stress_field(&mut self, setup: Option<&Setup<Arc<Profile>>>, at: JsonPath<'_>) {
+    pub fn needs_stress_field<F>(&mut self, setup: Option<&Setup<Arc<Profile>, F>>, at: JsonPath<'_>) {
         if let Some(Err(error)) = setup.map(|setup| setup.profile.check_stress_field()) {
             self.unanswerable(at, error);
         }
     }
 
     /// Refuses what is asked for at this place if it is defined for round contacts alone.
-    pub fn needs_round_contact(&mut self, setup: Option<&Setup<Arc<Profile>>>, at: JsonPath<'_>, what: &'static str) {
+    pub fn needs_round_contact<F>(
+        &mut self,
+        setup: Option<&Setup<Arc<Profile>, F>>,
+        at: JsonPath<'_>,
+        what: &'static str,
+    ) {
         if let Some(Err(error)) = setup.map(|setup| setup.profile.check_round(what)) {
             self.unanswerable(at, error);
         }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::subsurface::Side;
-use stickslip_mechanics::{Setup, elasticity};
+use stickslip_mechanics::{Friction, Setup, elasticity};
 
 use super::line_profiles::BulkPerForce;
 use crate::prelude::*;
@@ -19,6 +19,9 @@ pub struct ContactDefinition {
     pub material: Material,
     /// Coulomb's coefficient of friction μ, a pure number.
     pub friction: f64 = range::FRICTION,
+    /// Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load
+    /// must stay constant from the first tangential move on.
+    pub shear_strength: Option<f64> = range::SHEAR_STRENGTH,
     /// The normal load that the contact starts with.
     pub preload: Preload,
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
@@ -46,8 +49,11 @@ pub struct Effective {
 }
 }
 
-/// A checked definition, whose profile copies and other contacts share.
+/// A checked definition of Coulomb's law alone, whose profile copies and other contacts share.
 pub type SharedSetup = Setup<Arc<mechanics::Profile>>;
+
+/// The same under any limit of friction.
+pub type FrictionSetup = Setup<Arc<mechanics::Profile>, Friction>;
 
 /// The profile of the contact that a document defines.
 #[derive(Clone, Copy, Debug)]
@@ -135,8 +141,19 @@ impl ContactDefinition {
         DefinedProfile { pointer, profile: &self.profile, material: &self.material }
     }
 
-    /// The checked setup with its profile prepared by `profiles`; its faults are noted at `at`.
+    /// As [`ContactDefinition::check_any`], for what knows Coulomb's law alone.
     pub fn check(&self, at: JsonPath<'_>, profiles: &dyn Prepare, faults: &mut Faults) -> Option<SharedSetup> {
+        match self.check_any(at, profiles, faults)?.coulomb("this computation") {
+            Ok(setup) => Some(setup),
+            Err(error) => {
+                faults.unanswerable(at.member("shear_strength"), error);
+                None
+            }
+        }
+    }
+
+    /// The checked setup with its profile prepared by `profiles`; its faults are noted at `at`.
+    pub fn check_any(&self, at: JsonPath<'_>, profiles: &dyn Prepare, faults: &mut Faults) -> Option<FrictionSetup> {
         // A load curve is one of certain bodies, whose own faults are noted after those of the profile.
         let (bodies, place) = (self.material.elasticity(), at.member("profile"));
         let profile = profiles.profile(&self.profile, bodies.as_ref(), &mut || {
@@ -157,7 +174,8 @@ impl ContactDefinition {
             faults.unanswerable(place, error);
             return None;
         }
-        Some(Setup { profile, elasticity, friction: self.friction, preload })
+        let shear_strength = self.shear_strength.unwrap_or(0.0);
+        Some(Setup { profile, elasticity, friction: Friction { coefficient: self.friction, shear_strength }, preload })
     }
 
     /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can
@@ -165,6 +183,7 @@ impl ContactDefinition {
     pub fn place_of(quantity: Quantity, preload: &mechanics::Preload) -> &'static str {
         match quantity {
             Quantity::Friction => "/friction",
+            Quantity::ShearStrength => "/shear_strength",
             Quantity::NormalForce | Quantity::Indentation | Quantity::ContactRadius => match preload {
                 mechanics::Preload::NormalForce(_) => "/preload/normal_force",
                 mechanics::Preload::Indentation(_) => "/preload/indentation",

@@ -12,7 +12,9 @@ pub(crate) use uuid::Uuid;
 
 pub(crate) use crate::check::{Fault, Faults, JsonPath, Rejection};
 pub(crate) use crate::choice::{NumberOr, Numbers, choices, object_or_string, words};
-pub(crate) use crate::definition::{BodyName, ContactDefinition, DefinedProfile, Material, Preload, SharedSetup};
+pub(crate) use crate::definition::{
+    BodyName, ContactDefinition, DefinedProfile, FrictionSetup, Material, Preload, SharedSetup,
+};
 pub(crate) use crate::document::Document;
 pub(crate) use crate::limits::{
     Array, Items, Limit, Limited, LimitsOfSchemas, PATH_MOVES, STRESS_POINTS, Tolerance, count,

@@ -30,6 +30,9 @@ pub struct CreateRequest {
     pub material: Material,
     /// Coulomb's coefficient of friction μ, a pure number.
     pub friction: f64 = range::FRICTION,
+    /// Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load
+    /// must stay constant from the first tangential move on.
+    pub shear_strength: Option<f64> = range::SHEAR_STRENGTH,
     /// The normal load that the contact starts with.
     pub preload: Preload,
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
@@ -216,7 +219,7 @@ pub struct Creation {
     /// The definition as it was sent, to be stored.
     pub definition: ContactDefinition,
     /// The contact.
-    pub setup: SharedSetup,
+    pub setup: FrictionSetup,
 }
 
 /// Moves that have passed all checks, to be applied to a contact.
@@ -251,9 +254,9 @@ impl Document for CreateRequest {
     }
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let CreateRequest { label, profile, material, friction, preload, bulk } = self;
-        let definition = ContactDefinition { profile, material, friction, preload, bulk };
-        let setup = definition.check(JsonPath::Root, profiles, faults);
+        let CreateRequest { label, profile, material, friction, shear_strength, preload, bulk } = self;
+        let definition = ContactDefinition { profile, material, friction, shear_strength, preload, bulk };
+        let setup = definition.check_any(JsonPath::Root, profiles, faults);
         setup.map(|setup| Creation { label, definition, setup })
     }
 }

@@ -112,7 +112,7 @@ pub struct Simulation {
     /// The contact as it was sent, for the warnings.
     pub definition: ContactDefinition,
     /// The contact.
-    pub setup: SharedSetup,
+    pub setup: FrictionSetup,
     /// The path.
     pub plan: Plan,
     /// The requested stresses.
@@ -140,7 +140,7 @@ impl Document for SimulateRequest {
     }
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let setup = self.contact.check(JsonPath::Root.member("contact"), profiles, faults);
+        let setup = self.contact.check_any(JsonPath::Root.member("contact"), profiles, faults);
         let rings = matches!(self.solver, Some(Solver::Rings(_)));
         let plan = self.path.check(rings, JsonPath::Root.member("path"), faults);
         let stress = self.stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
@@ -154,6 +154,18 @@ impl Document for SimulateRequest {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
         let mut tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let law = match (&plan, &self.solver) {
+            (Some(Plan::Plane(_)), _) | (_, Some(Solver::Rings(_))) => Some("motion in the plane"),
+            (_, Some(Solver::Springs(_))) => Some("the spring foundation"),
+            (Some(Plan::EqualPeaks(_)), _) => Some("`equal_peaks`"),
+            _ if subsurface.is_some() => Some("`subsurface`"),
+            _ => None,
+        };
+        if let Some((what, setup)) = law.zip(setup.clone())
+            && let Err(error) = setup.coulomb(what)
+        {
+            faults.unanswerable(JsonPath::Root.member("contact").member("shear_strength"), error);
+        }
         if let Some(Plan::Plane(plane)) = &plan {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()));
             faults.needs_round_contact(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()), "motion in the plane");

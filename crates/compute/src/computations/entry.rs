@@ -123,6 +123,9 @@ impl<T: OnContact> ContactTask for T {
     }
 
     fn run(self: Box<Self>, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Box<dyn Written>, Failure> {
+        if !self.takes_shear_strength() {
+            contact.check_coulomb("this computation").map_err(|error| Failure::at("", error))?;
+        }
         Ok(Box::new(OnContact::run(*self, contact, sequence, stop)?))
     }
 }

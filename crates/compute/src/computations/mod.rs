@@ -138,6 +138,11 @@ pub trait OnContact: Send + 'static {
     /// The estimated time on a contact of this profile, with this many pieces of slip history.
     fn cost(&self, profile: &Profile, depth: usize) -> Nanoseconds;
 
+    /// Whether it holds for a contact with a shear strength as well.
+    fn takes_shear_strength(&self) -> bool {
+        false
+    }
+
     /// Computes, on a contact after its move number `sequence`.
     ///
     /// # Errors

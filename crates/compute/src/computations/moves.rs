@@ -42,6 +42,9 @@ pub fn make_moves(
 ) -> Result<Moved, Failure> {
     let timer = Timer::start(stop);
     let tolerance = advance.tolerance;
+    if advance.relax.is_some() || matches!(advance.plan, Plan::EqualPeaks(_)) {
+        contact.check_coulomb("a protocol").map_err(|error| Failure::at("", error))?;
+    }
     let relaxed = advance.relax.map(|relax| find_from_state(contact, &relax.task, stop)).transpose()?;
     let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
     let plan = plan.as_ref().unwrap_or(&advance.plan);
@@ -88,6 +91,7 @@ pub fn dry_run_relax(
     relaxation: &Relaxation,
     stop: &dyn Stop,
 ) -> Result<(Option<Vec<State>>, ProtocolReply), Failure> {
+    contact.check_coulomb("a protocol").map_err(|error| Failure::at("", error))?;
     let protocol = find_from_state(&contact, &relaxation.task, stop)?;
     let plan = Plan::Displacement(protocol.path.displacement.clone());
     let Some(steps) = relaxation.steps else { return Ok((None, protocol)) };

@@ -37,6 +37,10 @@ impl OnContact for ResidualTask {
         Work { depth, radii, residual: true, ..Work::default() }.cost(profile)
     }
 
+    fn takes_shear_strength(&self) -> bool {
+        true
+    }
+
     fn run(self, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Extrema, Failure> {
         let reply = simulation::residual(&contact, stop)?;
         let stress = self.between.map(|between| simulation::stresses(&contact, &between, stop)).transpose()?;

@@ -37,6 +37,10 @@ impl OnContact for StressTask {
         Work { depth, radii, residual: self.residual, ..Work::default() }.cost(profile)
     }
 
+    fn takes_shear_strength(&self) -> bool {
+        true
+    }
+
     fn run(self, contact: Contact, sequence: u64, stop: &dyn Stop) -> Result<Stresses, Failure> {
         let stress = simulation::stresses(&contact, &self.sampling, stop)?;
         let residual = self.residual.then(|| simulation::residual(&contact, stop)).transpose()?;
@@ -65,8 +69,13 @@ impl Outcome for Stresses {
             points(stress.places(), values).into_iter().map(move |(place, value)| (place, factor * value))
         };
         let state = contact.state();
-        let friction = contact.friction();
+        let (friction, strength) = (contact.friction(), contact.shear_strength());
+        let name = if strength > 0.0 { "friction bound ±(τ₀ + μp)" } else { "friction bound ±μp" };
         let (stick, edge) = (state.stick_radius, state.contact_radius);
+        let bound = |sign: f64| {
+            let cohesion = move |place: f64| if place.abs() <= edge { sign * strength } else { 0.0 };
+            over(&stress.pressure, sign * friction).map(move |(place, limit)| (place, limit + cohesion(place)))
+        };
         let mut bands = Vec::new();
         if state.regime != Regime::Separated {
             let line = contact.profile().line().is_some();
@@ -83,8 +92,8 @@ impl Outcome for Stresses {
             }
         }
         let curves = vec![
-            Curve::line("friction bound ±μp", Colour::Grey, over(&stress.pressure, friction)),
-            Curve::line("", Colour::Grey, over(&stress.pressure, -friction)),
+            Curve::line(name, Colour::Grey, bound(1.0)),
+            Curve::line("", Colour::Grey, bound(-1.0)),
             Curve::line("shear stress τ", Colour::Blue, over(&stress.shear, 1.0)),
         ];
         let title = format!("Shear stress after move {sequence}");

@@ -180,7 +180,9 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
         let count = if let Some(Solver::Rings(rings)) = simulation.solver { Some(rings.count) } else { None };
         let options = rings::Options { count, tolerance: simulation.tolerance };
         let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
-        return of_rings(&simulation.setup, &plane.moves, &options, radii);
+        // With a shear strength it is refused at once.
+        let setup = simulation.setup.clone().coulomb("motion in the plane");
+        return setup.map_or(0, |setup| of_rings(&setup, &plane.moves, &options, radii));
     }
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());

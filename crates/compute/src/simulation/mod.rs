@@ -151,12 +151,14 @@ impl Failure {
                 | mechanics::Error::BodiesNeeded
                 | mechanics::Error::LineContact(_)
                 | mechanics::Error::RoundContact(_)
+                | mechanics::Error::ShearStrength(_)
                 | mechanics::Error::BulkNeedsConstantLoad
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::NoStressField { .. } => Code::NoStressField,
                 mechanics::Error::BeyondProfile { .. }
                 | mechanics::Error::BeyondReferenceLength { .. }
                 | mechanics::Error::WornBeyondProfile { .. } => Code::BeyondProfile,
+                mechanics::Error::LoadMustBeConstant => Code::LoadMustBeConstant,
                 mechanics::Error::BulkTooLarge { .. } => Code::BulkTooLarge,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
                 mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,

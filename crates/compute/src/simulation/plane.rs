@@ -5,7 +5,7 @@ use stickslip_mechanics::{Normal, range::Quantity};
 use stickslip_wire::Solver;
 use stickslip_wire::plane::{PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulationReply};
 
-use super::run::{refused_at, simulate};
+use super::run::{coulomb, refused_at, simulate};
 use super::warnings::{FarMove, stress_warning, warnings_at};
 use crate::prelude::*;
 
@@ -91,7 +91,8 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
         _ => (None, "the path leaves its first line or turns back within a move: rings and steps by the tolerance"),
     };
     let options = Options { count, tolerance: simulation.tolerance };
-    let solution = follow_in_plane(&simulation.setup, &simulation.plan, plane, &options, stop)?;
+    let setup = coulomb(&simulation.setup, "motion in the plane")?;
+    let solution = follow_in_plane(&setup, &simulation.plan, plane, &options, stop)?;
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solution, sampling, stop)).transpose()?;
     let summary = solution.pressed().initial_summary();
     let table = solution.pressed().accuracy();

@@ -1,10 +1,11 @@
 //! From a checked request to a reply.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::range::Quantity;
-use stickslip_mechanics::{Preload, Springs, protocol, springs};
+use stickslip_mechanics::{Friction, Preload, Setup, Springs, protocol, springs};
 
 use super::stress_below::subsurface;
 use super::warnings::{FarMove, bulk_warning, stress_warning, warnings_at};
@@ -24,7 +25,8 @@ const ALONG_ONE_LINE: &str =
 pub fn simulate(simulation: &Simulation, stop: &dyn Stop) -> Result<SimulateReply, Failure> {
     let timer = Timer::start(stop);
     if let Some(wire::Solver::Springs(wire::Springs { count })) = simulation.solver {
-        let springs = spring_foundation(&simulation.setup, &simulation.plan, count, stop)?;
+        let setup = coulomb(&simulation.setup, "the spring foundation")?;
+        let springs = spring_foundation(&setup, &simulation.plan, count, stop)?;
         return run(springs, simulation, timer, AS_ASKED, stop);
     }
     simulate_on(contact(simulation.setup.clone(), "/contact")?, simulation, timer, stop)
@@ -114,9 +116,17 @@ pub(super) fn run<S: Solver>(
 ///
 /// # Errors
 /// [`Cause::Refused`] if the preload cannot be reached.
-pub fn contact(setup: SharedSetup, base: &str) -> Result<Contact, Failure> {
+pub fn contact<F: Into<Friction>>(setup: Setup<Arc<Profile>, F>, base: &str) -> Result<Contact, Failure> {
     let refused = refused_at(base, setup.preload);
     Contact::new(setup).map_err(refused)
+}
+
+/// The definition at `/contact` for what knows Coulomb's law alone; `what` names it.
+///
+/// # Errors
+/// [`Cause::Refused`] if there is a shear strength.
+pub fn coulomb(setup: &FrictionSetup, what: &'static str) -> Result<SharedSetup, Failure> {
+    setup.clone().coulomb(what).map_err(refused_at("/contact", setup.preload))
 }
 
 /// A foundation of this many springs, as wide as the path needs.
@@ -142,6 +152,9 @@ pub fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> 
             mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
             mechanics::Error::BeyondReferenceLength { .. } => "/profile/reference_length",
             mechanics::Error::BulkTooLarge { .. } => "/bulk/stress_per_force",
+            mechanics::Error::ShearStrength(_)
+            | mechanics::Error::LineContact(_)
+            | mechanics::Error::NoStressField { .. } => "/shear_strength",
             _ => quantity(&error).map_or("", place_of),
         };
         Failure::at(format!("{base}{place}"), error)
@@ -313,7 +326,7 @@ pub fn residual<S: Solver>(solver: &S, stop: &dyn Stop) -> Result<Residual, Fail
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => {
             let exact = solver.exact();
-            Ok(Residual::new(residual, exact.summary().unit_shear(), exact.profile()))
+            Ok(Residual::new(residual, exact.unit_shear(), exact.profile()))
         }
         None => Err(Failure::from(Interrupted::Abandoned).unless_interrupted(stop, "")),
     }

@@ -3,7 +3,7 @@
 
 use stickslip_mechanics::{Move, Normal, State, Tangential};
 
-use super::run::{cycle_moves, spring_foundation};
+use super::run::{coulomb, cycle_moves, spring_foundation};
 use super::{Solver, contact};
 use crate::prelude::*;
 
@@ -28,7 +28,8 @@ pub fn trace_simulation(task: &Simulation, stop: &dyn Stop) -> Result<Vec<Point>
     let moves: Vec<_> = cycle_moves(&task.plan, &start)?.into_iter().map(|step| (step, task.tolerance)).collect();
     match task.solver {
         Some(wire::Solver::Springs(wire::Springs { count })) => {
-            trace(spring_foundation(&task.setup, &task.plan, count, stop)?, &moves, stop)
+            let setup = coulomb(&task.setup, "the spring foundation")?;
+            trace(spring_foundation(&setup, &task.plan, count, stop)?, &moves, stop)
         }
         _ => trace(start, &moves, stop),
     }

@@ -17,6 +17,7 @@ mod preparation;
 mod profile_fit;
 mod profiles;
 mod protocols;
+mod shear_strength;
 mod simulate;
 mod subsurface;
 mod sweeps;

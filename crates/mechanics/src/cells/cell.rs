@@ -387,6 +387,11 @@ impl Cell {
         &self.powers
     }
 
+    /// What g is a series of from b on, together with an odd function of zeta.
+    pub(crate) fn begins_as(&self) -> Powers {
+        if self.odd { Powers::Odd } else { Powers::All((self.order - 1).min(1) as usize) }
+    }
+
     /// Whether the series takes only odd powers.
     pub(crate) fn odd(&self) -> bool {
         self.odd

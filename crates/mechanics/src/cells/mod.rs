@@ -78,6 +78,8 @@ pub(crate) struct Cells {
     /// The least radius at which a kernel is not that of the centre.
     pub(crate) floor: StressRadius,
     pub(crate) top: Top,
+    /// Whether squares are as exact as they are beside a kink, everywhere: the edge is a branch point.
+    all_digits: bool,
 }
 
 impl Cells {
@@ -114,8 +116,14 @@ impl Cells {
             steepness: OnceLock::new(),
             floor: StressRadius::new(0.0),
             top,
+            all_digits: false,
             cells,
         }
+    }
+
+    /// The same whose squares are as exact everywhere as they are beside a kink.
+    pub(crate) fn with_all_digits(self) -> Cells {
+        Cells { all_digits: true, ..self }
     }
 
     /// The kernel's sources g' dx over x^2.
@@ -191,7 +199,7 @@ impl Cells {
         }
         let square = cell.square + DoubleDouble::square_of(cell.zeta_of(rest));
         // Without a kink below, x has all the digits that it needs, and the edge is where its radius is.
-        if cell.kink > 0.0 { square } else { DoubleDouble::square_of(square.value().sqrt()) }
+        if cell.kink > 0.0 || self.all_digits { square } else { DoubleDouble::square_of(square.value().sqrt()) }
     }
 
     /// The level, m, up to which int X dy is this load, m^2.
@@ -218,9 +226,7 @@ impl Cells {
         } else {
             ring.outer
         };
-        let mut index = self.find(ring.inner.radius);
-        index += usize::from(self.cells.get(index + 1).is_some_and(|next| next.square <= ring.inner.square));
-        index -= usize::from(index > 0 && self.cells[index].square > ring.inner.square);
+        let index = self.last_that(self.find(ring.inner.radius), |square| square <= ring.inner.square);
         let Some(cell) = self.cells.get(index) else { return 0.0 };
         let low = (ring.inner.square - cell.square).value().max(0.0);
         if let Some(next) = self.cells.get(index + 1).filter(|next| next.square < outer.square) {
@@ -237,7 +243,7 @@ impl Cells {
         }
         let high = (outer.square - cell.square).value().max(0.0);
         // Squares that were rounded with their radius have lost what the depth of a thin ring has.
-        let rounded = cell.kink <= 0.0 && high - low <= THIN * outer.square.value();
+        let rounded = cell.kink <= 0.0 && !self.all_digits && high - low <= THIN * outer.square.value();
         cell.gap(low, high, depth, rounded)
     }
 
@@ -260,21 +266,27 @@ impl Cells {
         last(&self.radii, |start| start <= radius)
     }
 
+    /// The last cell, near `index`, that begins at a square with this property, or the first cell: a radius just beyond
+    /// a border may be rounded onto it, or to its other side.
+    fn last_that(&self, mut index: usize, holds: impl Fn(DoubleDouble) -> bool) -> usize {
+        while self.cells.get(index + 1).is_some_and(|next| holds(next.square)) {
+            index += 1;
+        }
+        while index > 0 && self.cells.get(index).is_some_and(|cell| !holds(cell.square)) {
+            index -= 1;
+        }
+        index
+    }
+
     /// The parts of a span outside the flat core.
     pub(crate) fn parts(&self, span: &Span) -> SpanParts {
         let beyond_flat = |first: &Cell| span.above(first.square, first.radius);
         let Some(span) = &self.cells.first().and_then(beyond_flat) else {
             return SpanParts { low: None, whole: 0..0, high: None };
         };
-        // By the squares: a radius just beyond a border may be rounded onto it, or to its other side.
-        let begins = |index: usize| self.cells.get(index).map(|cell| cell.square);
-        let mut outer = last(&self.radii, |start| start < span.outer_radius);
-        outer += usize::from(begins(outer + 1).is_some_and(|square| square < span.outer));
-        outer -= usize::from(outer > 0 && begins(outer).is_some_and(|square| square >= span.outer));
-        let mut inner = self.find(span.inner_radius);
-        inner += usize::from(begins(inner + 1).is_some_and(|square| square <= span.inner));
-        inner -= usize::from(inner > 0 && begins(inner).is_some_and(|square| square > span.inner));
-        let inner = inner.min(outer);
+        let outer = last(&self.radii, |start| start < span.outer_radius);
+        let outer = self.last_that(outer, |square| square < span.outer);
+        let inner = self.last_that(self.find(span.inner_radius), |square| square <= span.inner).min(outer);
         if inner == outer {
             return SpanParts { low: None, whole: outer..outer, high: Some((outer, *span)) };
         }

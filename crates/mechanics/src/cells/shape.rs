@@ -23,7 +23,7 @@ pub(crate) enum Powers {
 
 impl Powers {
     /// Those of the sum of two functions.
-    pub(super) fn and(self, other: Powers) -> Powers {
+    pub(crate) fn and(self, other: Powers) -> Powers {
         match (self, other) {
             (Powers::Uneven(one), Powers::Uneven(other)) => Powers::Uneven(one.min(other)),
             (Powers::Uneven(power), other) | (other, Powers::Uneven(power)) if power >= SMOOTH => {

@@ -42,6 +42,9 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn accuracy(&self) -> ErrorEstimate {
+        if let Some(contact) = self.tangential() {
+            return contact.accuracy();
+        }
         // Without a load there is nothing to err; with one, an error that is not known is the largest number.
         let pressed = self.normal_force() > 0.0;
         let known = |value: f64| if pressed && !value.is_nan() { value.min(f64::MAX) } else { 0.0 };

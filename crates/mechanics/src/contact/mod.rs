@@ -5,13 +5,15 @@ pub(crate) mod accuracy;
 pub(crate) mod normal;
 pub(crate) mod packed;
 mod results;
+mod shear_strength;
 pub(crate) mod state;
 
 use std::sync::Arc;
 
 use crate::slip_history::SlipHistory;
 use normal::Preload;
-use state::Setup;
+use shear_strength::ShearStrength;
+use state::{Friction, Setup};
 
 use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
@@ -59,6 +61,8 @@ pub struct Contact {
     /// 1/m; zero without friction, when the surface carries nothing and the slip history does not follow the
     /// displacement.
     pub(crate) inverse_scale: DoubleDouble,
+    /// None for Coulomb's law.
+    pub(crate) strength: Option<ShearStrength>,
 }
 
 impl Contact {
@@ -67,7 +71,8 @@ impl Contact {
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
     /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an
-    /// ellipsoid and bodies that are unknown.
+    /// ellipsoid and bodies that are unknown; [`Error::LineContact`] and [`Error::NoStressField`] for a shear strength
+    /// of a contact that is not round.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -80,8 +85,9 @@ impl Contact {
     /// assert_eq!(Contact::new(mild)?.contact_radius(), Contact::new(rough)?.contact_radius());
     /// # Ok::<(), Error>(())
     /// ```
-    pub fn new<P: Into<Arc<Profile>>>(setup: Setup<P>) -> Result<Contact, Error> {
+    pub fn new<P: Into<Arc<Profile>>, F: Into<Friction>>(setup: Setup<P, F>) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup.shared();
+        let Friction { coefficient: friction, shear_strength } = friction.into();
         let elasticity = match &*profile {
             Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
             Profile::Line(_) => elasticity.along_line(),
@@ -119,7 +125,7 @@ impl Contact {
         } else {
             DoubleDouble::ZERO
         };
-        Ok(Contact {
+        let contact = Contact {
             indenter: Arc::new(indenter),
             elasticity,
             friction,
@@ -132,7 +138,9 @@ impl Contact {
             path_error: 0.0,
             path_kernel: 0.0,
             inverse_scale,
-        })
+            strength: None,
+        };
+        contact.with_shear_strength(shear_strength)
     }
 
     /// The same contact at its preload, before its first move.
@@ -150,13 +158,14 @@ impl Contact {
 
     /// The same definition, displacement and load, without pieces of the slip history.
     pub(crate) fn clone_without_history(&self) -> Contact {
-        Contact { indenter: Arc::clone(&self.indenter), history: SlipHistory::default(), ..*self }
+        let (indenter, strength) = (Arc::clone(&self.indenter), self.strength.clone());
+        Contact { indenter, history: SlipHistory::default(), strength, ..*self }
     }
 
     /// The contact before its first move, at an indentation, m, and the normal force, N, that belongs to it; without a
     /// copy of the slip history.
     fn at_rest(&self, preload: (DoubleDouble, f64)) -> Contact {
-        Contact {
+        let mut contact = Contact {
             history: SlipHistory::new(&Coulomb(&self.indenter), preload.0),
             displacement: DoubleDouble::ZERO,
             normal_force: preload.1,
@@ -165,7 +174,9 @@ impl Contact {
             path_error: 0.0,
             path_kernel: 0.0,
             ..self.clone_without_history()
-        }
+        };
+        contact.renew_tangential();
+        contact
     }
 
     /// The same contact at its present normal load, as if it had never been moved.

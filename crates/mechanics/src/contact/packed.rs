@@ -8,10 +8,13 @@
 //! | 4 | [`LAYOUT`] and, in the upper half, [`ENGINE`] |
 //! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
-//! | the rest | the slip history, see `slip_history/packed.rs` |
+//! | the rest | the slip history, see `slip_history/packed.rs`; of a contact with a shear strength (8) this and the |
+//! | | indentation (two parts) come before that of its tangential problem |
 
 use super::Contact;
 use crate::numerics::packing::{Packed, Reader};
+use crate::slip_history::SlipHistory;
+use crate::slip_history::limit::Coulomb;
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
@@ -45,7 +48,11 @@ impl Contact {
     /// How many bytes [`Contact::pack`] makes.
     #[must_use]
     pub fn packed_length(&self) -> usize {
-        2 * size_of::<u16>() + 11 * size_of::<f64>() + self.history.packed_length()
+        let history = match &self.strength {
+            Some(_) => 3 * size_of::<f64>() + self.tangential().map_or(0, |contact| contact.history.packed_length()),
+            None => self.history.packed_length(),
+        };
+        2 * size_of::<u16>() + 11 * size_of::<f64>() + history
     }
 
     /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another
@@ -61,7 +68,14 @@ impl Contact {
         self.dissipated.pack(&mut bytes);
         self.path_error.pack(&mut bytes);
         self.path_kernel.pack(&mut bytes);
-        self.history.pack(&mut bytes);
+        match &self.strength {
+            Some(strength) => {
+                strength.value.pack(&mut bytes);
+                self.history.edge().level.pack(&mut bytes);
+                strength.tangential.iter().for_each(|contact| contact.history.pack(&mut bytes));
+            }
+            None => self.history.pack(&mut bytes),
+        }
         bytes
     }
 
@@ -89,7 +103,17 @@ impl Contact {
         contact.dissipated = Packed::unpack(&mut reader)?;
         // The error of a stress may be without bound.
         (contact.path_error, contact.path_kernel) = (reader.any()?, reader.any()?);
-        contact.history = Packed::unpack(&mut reader)?;
+        if self.strength.is_none() {
+            contact.history = Packed::unpack(&mut reader)?;
+            return Some(contact);
+        }
+        reader.any().filter(|value| value.to_bits() == self.shear_strength().to_bits())?;
+        contact.history = SlipHistory::new(&Coulomb(&contact.indenter), Packed::unpack(&mut reader)?);
+        contact.renew_tangential();
+        match contact.strength.as_mut().and_then(|strength| strength.tangential.as_deref_mut()) {
+            Some(tangential) => tangential.history = Packed::unpack(&mut reader)?,
+            None => reader.0.is_empty().then_some(())?,
+        }
         Some(contact)
     }
 

@@ -63,6 +63,9 @@ impl Contact {
     /// Tangential force, N.
     #[must_use]
     pub fn force(&self) -> f64 {
+        if let Some(contact) = self.tangential() {
+            return contact.force();
+        }
         2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
     }
 
@@ -169,30 +172,44 @@ impl Contact {
     /// Displacement of gross slip on first loading, m, at the present load.
     #[must_use]
     pub fn gross_slip_displacement(&self) -> f64 {
-        self.scale() * self.indentation().max(0.0)
+        self.tangential().map_or_else(|| self.scale() * self.indentation().max(0.0), Contact::gross_slip_displacement)
     }
 
     /// Number of straight pieces that the slip history consists of.
     #[must_use]
     pub fn memory_depth(&self) -> usize {
-        self.history.pieces().len()
+        self.tangential().unwrap_or(self).history.pieces().len()
     }
 
     /// Bytes of RAM that the contact takes, its slip history included.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes()
+        let own = size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes();
+        own + self.tangential().map_or(0, Contact::memory_bytes)
     }
 
     /// The summary at the present normal load.
     #[must_use]
     pub fn summary(&self) -> ContactSummary {
-        ContactSummary::of(&self.indenter, &self.elasticity, self.friction, self.history.edge(), self.normal_force)
+        let own =
+            ContactSummary::of(&self.indenter, &self.elasticity, self.friction, self.history.edge(), self.normal_force);
+        let Some(contact) = self.tangential() else { return own };
+        let (gross_slip_displacement, gross_slip_force) = (contact.gross_slip_displacement(), contact.normal_force);
+        ContactSummary { gross_slip_displacement, gross_slip_force, ..own }
+    }
+
+    /// What stresses along the surface are related to, Pa: [`ContactSummary::unit_shear`] with the shear strength.
+    #[must_use]
+    pub fn unit_shear(&self) -> f64 {
+        self.tangential().unwrap_or(self).summary().unit_shear()
     }
 
     /// The summary at the preload of the definition.
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
+        if self.strength.is_some() {
+            return self.virgin().summary();
+        }
         let (indentation, normal_force) = self.preload;
         let edge = self.indenter.point(indentation);
         ContactSummary::of(&self.indenter, &self.elasticity, self.friction, &edge, normal_force)
@@ -218,6 +235,10 @@ impl Contact {
         let edge = self.history.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();
+        if let Some(contact) = self.tangential() {
+            let (normal_force, contact_radius) = (self.normal_force(), self.contact_radius());
+            return State { indentation: edge.level.value(), normal_force, contact_radius, ..contact.state() };
+        }
         let state = State {
             displacement: self.displacement.value(),
             // The -0 of a virgin contact is 0.

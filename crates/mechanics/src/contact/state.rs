@@ -5,25 +5,67 @@ use std::sync::Arc;
 use super::normal::Preload;
 use crate::elasticity::Elasticity;
 use crate::profile::Profile;
+use crate::range::error::Error;
 
 /// The definition of a contact. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
 /// large.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Setup<P = Profile> {
+pub struct Setup<P = Profile, F = f64> {
     /// The shape of the indenter.
     pub profile: P,
     /// The reduced moduli.
     pub elasticity: Elasticity,
-    /// Coulomb's coefficient of friction mu.
-    pub friction: f64,
+    /// Coulomb's coefficient of friction mu, or a [`Friction`].
+    pub friction: F,
     /// The normal load that the virgin contact starts with.
     pub preload: Preload,
 }
 
-impl<P: Into<Arc<Profile>>> Setup<P> {
+/// What the shear stress of a contact cannot exceed: |tau| <= tau_0 + mu p.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// Coulomb's coefficient mu.
+    pub coefficient: f64,
+    /// The shear strength tau_0 of the interface, Pa; zero for Coulomb's law.
+    pub shear_strength: f64,
+}
+
+impl From<f64> for Friction {
+    fn from(coefficient: f64) -> Friction {
+        Friction { coefficient, shear_strength: 0.0 }
+    }
+}
+
+impl<P> Setup<P, Friction> {
+    /// The same with Coulomb's law alone, for what knows no other; `what` names it.
+    ///
+    /// # Errors
+    /// [`Error::ShearStrength`] if there is a shear strength.
+    ///
+    /// ```
+    /// use stickslip_mechanics::{Elasticity, Friction, Preload, Setup, Sphere};
+    ///
+    /// let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
+    /// let friction = Friction { coefficient: 0.3, shear_strength: 1e6 };
+    /// let setup = Setup { profile: Sphere::new(0.01)?, elasticity, friction, preload: Preload::NormalForce(10.0) };
+    /// let refused = setup.clone().coulomb("wear").unwrap_err();
+    /// assert_eq!(refused.to_string(), "wear is not available with a shear strength");
+    /// assert!(Setup { friction: Friction::from(0.3), ..setup }.coulomb("wear").is_ok());
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
+    pub fn coulomb(self, what: &'static str) -> Result<Setup<P>, Error> {
+        let Setup { profile, elasticity, friction, preload } = self;
+        if friction.shear_strength > 0.0 {
+            return Err(Error::ShearStrength(what));
+        }
+        Ok(Setup { profile, elasticity, friction: friction.coefficient, preload })
+    }
+}
+
+impl<P: Into<Arc<Profile>>, F> Setup<P, F> {
     /// The same, whose copies share the profile.
     #[must_use]
-    pub fn shared(self) -> Setup<Arc<Profile>> {
+    pub fn shared(self) -> Setup<Arc<Profile>, F> {
         let Setup { profile, elasticity, friction, preload } = self;
         Setup { profile: profile.into(), elasticity, friction, preload }
     }

@@ -49,6 +49,7 @@ pub fn best_load(
     compliance: f64,
     keep_going: &dyn Fn() -> bool,
 ) -> Result<Option<BestLoad>, Error> {
+    contact.check_coulomb("the best load")?;
     if contact.friction <= 0.0 {
         return Ok(None);
     }

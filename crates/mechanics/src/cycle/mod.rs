@@ -79,6 +79,7 @@ impl<'a> SteadyCycle<'a> {
     /// ```
     #[must_use]
     pub fn of(contact: &'a Contact, amplitude: f64) -> SteadyCycle<'a> {
+        let contact = contact.tangential().unwrap_or(contact);
         let amplitude = amplitude.abs();
         let edge = contact.history.edge().level;
         if edge.value() <= 0.0 || contact.friction <= 0.0 {
@@ -110,6 +111,7 @@ impl<'a> SteadyCycle<'a> {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn driven(contact: &'a Contact, drive: Drive, compliance: f64) -> Result<SteadyCycle<'a>, Error> {
+        let contact = contact.tangential().unwrap_or(contact);
         let edge = contact.history.edge().level;
         let limit = contact.friction * contact.normal_force;
         let cycle = match drive {

@@ -75,6 +75,7 @@ impl Oscillation {
         count: usize,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<OscillatingCycle, Error> {
+        contact.check_coulomb("a cycle under an oscillating load")?;
         let (mut steps, mut earlier) = (FEWEST, 0.0_f64);
         let mut coarse = self.followed(contact, steps, count, keep_going)?;
         loop {

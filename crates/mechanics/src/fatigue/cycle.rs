@@ -59,6 +59,7 @@ impl Cycle {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn new(contact: &Contact, moves: &[Move], keep_going: &dyn Fn() -> bool) -> Result<Cycle, Error> {
+        contact.check_coulomb("fretting fatigue")?;
         let mut here = contact.clone();
         let mut open = None;
         for _ in 0..MOST_LAPS {

@@ -125,6 +125,11 @@ impl Indenter {
         &self.profile
     }
 
+    /// The same document, shared.
+    pub(crate) fn shared_profile(&self) -> Arc<Profile> {
+        Arc::clone(&self.profile)
+    }
+
     /// The body of revolution whose stresses over r are those of the contact, if there is one.
     pub(crate) fn face(&self) -> Option<&Indenter> {
         match &self.face {

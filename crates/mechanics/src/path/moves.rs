@@ -35,7 +35,8 @@ impl Contact {
     /// [`Error::OutOfRange`] for a target outside [`range`](mod@range); [`Error::ForceExceedsFriction`] for a
     /// tangential force that friction cannot hold all the way; [`Error::BeyondProfile`], [`Error::NotConvexEnough`] and
     /// [`Error::BeyondReferenceLength`] for a normal target that the profile has no contact for, and
-    /// [`Error::BulkNeedsConstantLoad`] for any of a line contact with a bulk stress.
+    /// [`Error::BulkNeedsConstantLoad`] for any of a line contact with a bulk stress; [`Error::LoadMustBeConstant`]
+    /// where the load changes while a contact with a shear strength carries shear.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -79,6 +80,11 @@ impl Contact {
         visit: &mut dyn FnMut(f64, &Contact),
     ) -> Result<(), Error> {
         let normal = self.normal_path(step)?;
+        if self.shear_strength() > 0.0 {
+            self.apply_with_strength(step, &normal)?;
+            visit(1.0, self);
+            return Ok(());
+        }
         let tangential = self.tangential_path(step)?;
         // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
         // state.
@@ -148,7 +154,7 @@ impl Contact {
         Ok(())
     }
 
-    fn tangential_path(&self, step: &Move) -> Result<TangentialPath, Error> {
+    pub(crate) fn tangential_path(&self, step: &Move) -> Result<TangentialPath, Error> {
         let here = self.displacement;
         Ok(match step.tangential {
             None => TangentialPath::Displacement { from: here, to: here },

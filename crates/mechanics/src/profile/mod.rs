@@ -14,6 +14,7 @@ mod asperities;
 mod curve_family;
 mod ellipsoid;
 mod families;
+mod limit_shape;
 mod line;
 mod load_curve;
 mod open_gaps;
@@ -26,6 +27,7 @@ pub use crate::cells::ring::{Moments, Point, Ring, StressRadius};
 pub use asperities::Asperities;
 pub use ellipsoid::{Direction, Ellipsoid};
 pub use families::{Family, Parameter};
+pub use limit_shape::LimitShape;
 pub use line::{LineBulk, LineContact, PadFace, WIDEST};
 pub use load_curve::LoadCurve;
 pub use sum::Sum;
@@ -79,6 +81,8 @@ macro_rules! families {
             Line(LineContact),
             /// What the pressure of a pad along a line follows from, as a body of revolution.
             PadFace(PadFace),
+            /// The limit of friction of a contact at one load.
+            Limit(LimitShape),
         }
 
         impl Profile {
@@ -89,6 +93,7 @@ macro_rules! families {
                     Profile::Tabulated(table) => Some(table),
                     Profile::Sum(sum) => Some(sum),
                     Profile::PadFace(face) => Some(face),
+                    Profile::Limit(limit) => Some(limit),
                     Profile::Asperities(_) | Profile::Ellipsoid(_) | Profile::LoadCurve(_) | Profile::Line(_) => None,
                 }
             }
@@ -188,7 +193,11 @@ impl Profile {
     /// rounding grows.
     #[must_use]
     pub fn cancellation(&self, x: f64) -> f64 {
-        if let Profile::Sum(sum) = self { sum.cancellation(x) } else { 1.0 }
+        match self {
+            Profile::Sum(sum) => sum.cancellation(x),
+            Profile::Limit(limit) => limit.cancellation(x),
+            _ => 1.0,
+        }
     }
 
     /// dz/dr of the undeformed surface at the radius r, m (pure number); of a table, the slope of its chord there.
@@ -219,6 +228,7 @@ impl Profile {
     pub fn interpolation_error(&self, radius: f64) -> InterpolationError {
         match self {
             Profile::Tabulated(table) => table.interpolation_error(radius),
+            Profile::Limit(limit) => limit.interpolation_error(radius),
             Profile::Sum(sum) => {
                 let errors = sum.parts().iter().map(|part| part.interpolation_error(radius));
                 errors.fold(InterpolationError::default(), InterpolationError::and)

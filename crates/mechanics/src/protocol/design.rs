@@ -164,6 +164,7 @@ pub fn design(
     keep_going: &dyn Fn() -> bool,
 ) -> Result<Design, Error> {
     let above = |quantity, value, why| Error::OutOfRange { quantity, value, allowed: format!("more than 0, as {why}") };
+    contact.check_coulomb("a protocol")?;
     contact.profile().check_stress_field()?;
     if contact.friction <= 0.0 {
         return Err(above(Quantity::Friction, contact.friction, "a contact without friction carries no shear stress"));

@@ -98,6 +98,7 @@ pub struct EqualPeaks {
 /// # Ok::<(), Error>(())
 /// ```
 pub fn equal_peaks(contact: &Contact, reversals: usize, cutoff_radius: Option<f64>) -> Result<EqualPeaks, Error> {
+    contact.check_coulomb("a protocol")?;
     contact.profile().check_stress_field()?;
     if let Some(line) = contact.indenter.line() {
         let EqualPeaks { displacements, cutoff_radius: cutoff } =

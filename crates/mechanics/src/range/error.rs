@@ -60,6 +60,15 @@ pub enum Error {
     /// A normal target of a contact whose bulk stress moves the stick zone.
     #[error("a bulk stress needs a constant normal force: leave the normal target out")]
     BulkNeedsConstantLoad,
+    /// A load that changes while a contact with a shear strength carries shear.
+    #[error(
+        "with a shear strength the load must stay constant while the contact carries shear stress: change the load \
+         before the first tangential move"
+    )]
+    LoadMustBeConstant,
+    /// What knows Coulomb's law alone.
+    #[error("{0} is not available with a shear strength")]
+    ShearStrength(&'static str),
     /// Places along x where there are radii alone.
     #[error("{0} is available for line contacts only")]
     RoundContact(&'static str),

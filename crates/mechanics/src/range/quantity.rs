@@ -85,6 +85,8 @@ quantities! {
     GStar = "g_star", G_STAR: 1e-3 to 1e18 "Pa", "The reduced shear modulus G*.";
     Friction = "friction", FRICTION: 0.0 to 100.0 "",
         "Coulomb's coefficient of friction; zero means no tangential force at all.";
+    ShearStrength = "shear_strength", SHEAR_STRENGTH: 0.0 to 1e18 "Pa",
+        "The shear strength of an interface, in addition to friction times pressure.";
     NormalForce = "normal_force", NORMAL_FORCE: 0.0 to 1e18 "N", "A normal force that presses the bodies together.";
     ContactRadius = "contact_radius", CONTACT_RADIUS: 0.0 to 1e9 "m",
         "The contact radius, prescribed or as it follows from a load; zero is a contact just touching.";

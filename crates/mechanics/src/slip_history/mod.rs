@@ -60,6 +60,16 @@ impl SlipHistory {
         history
     }
 
+    /// The same virgin contact where the scaled displacement is `position`, m.
+    pub(super) fn at_position(self, position: DoubleDouble) -> SlipHistory {
+        SlipHistory { position, reference: position, ..self }
+    }
+
+    /// Whether nothing has moved it since it touched, or all of it slides along unloaded: w = 0 everywhere.
+    pub(super) fn is_virgin(&self) -> bool {
+        self.total.size <= 0.0 && self.shift() == DoubleDouble::ZERO
+    }
+
     pub(super) fn pieces(&self) -> &[Piece] {
         &self.pieces
     }

@@ -81,6 +81,7 @@ impl Contact {
     /// As [`Contact::subsurface`], without a copy.
     pub(super) fn into_subsurface(self, side: Side, poisson_ratio: f64) -> Result<Subsurface, Error> {
         let poisson = range::POISSON_RATIO.check(poisson_ratio)?;
+        self.check_coulomb("the stress below the surface")?;
         self.profile().check_stress_field()?;
         let radius = self.contact_radius();
         let sign = if side == Side::Second { 1.0 } else { -1.0 };

@@ -42,7 +42,7 @@ impl Contact {
             return self.indenter.face().map(|_| Cow::Borrowed(self));
         };
         let history = self.history.moved_to(|level| line.face_point(level));
-        Some(Cow::Owned(Contact { indenter: Arc::clone(face), history, ..*self }))
+        Some(Cow::Owned(Contact { indenter: Arc::clone(face), history, ..self.clone_without_history() }))
     }
 
     /// Centre of the stuck zone of the half-width c, m, in the present contact.

@@ -61,6 +61,9 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn shear(&self, radius: f64) -> f64 {
+        if let Some(contact) = self.tangential() {
+            return contact.shear(radius);
+        }
         if let Some(line) = self.eccentric() {
             return self.eccentric_shears(line, &[radius])[0];
         }
@@ -77,6 +80,9 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn shears(&self, radii: &[f64]) -> Vec<f64> {
+        if let Some(contact) = self.tangential() {
+            return contact.shears(radii);
+        }
         if let Some(line) = self.eccentric() {
             return self.eccentric_shears(line, radii);
         }
@@ -158,6 +164,9 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn residual_while(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
+        if let Some(contact) = self.tangential() {
+            return contact.residual_while(keep_going);
+        }
         if let Some(line) = self.eccentric() {
             return self.eccentric_residual(line, keep_going);
         }

@@ -34,6 +34,9 @@ impl Contact {
     /// [`Contact::surface_displacement`] at each of `radii`, m: faster than one by one.
     #[must_use]
     pub fn surface_displacements(&self, radii: &[f64]) -> Vec<f64> {
+        if let Some(contact) = self.tangential() {
+            return contact.surface_displacements(radii);
+        }
         let (edge, shift) = (self.history.edge(), self.history.shift().value());
         if let Some(line) = self.indenter.line() {
             let zones: Vec<_> = self.zones(line).collect();
@@ -58,6 +61,9 @@ impl Contact {
     /// [`Contact::slip`] at each of `radii`, m: faster than one by one.
     #[must_use]
     pub fn slips(&self, radii: &[f64]) -> Vec<Option<f64>> {
+        if let Some(contact) = self.tangential() {
+            return contact.slips(radii);
+        }
         let edge = self.history.edge();
         let (pressed, most) = (edge.level.value() > 0.0, self.contact_radius());
         let touched = |radius: &f64| pressed && radius.abs() <= most;

@@ -111,6 +111,7 @@ impl<'a> WornContact<'a> {
     /// As [`Profile::check_wear`]; [`Error::OutOfRange`] for an amplitude from gross slip on, under which all of the
     /// contact wears on; [`Error::WornBeyondProfile`] if the profile ends within the worn part.
     pub fn new(contact: &'a Contact, amplitude: f64) -> Result<WornContact<'a>, Error> {
+        contact.check_coulomb("wear")?;
         contact.profile().check_wear()?;
         let edge = *contact.history.edge();
         let step = contact.scaled(DoubleDouble::from(amplitude));

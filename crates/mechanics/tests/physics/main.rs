@@ -40,6 +40,7 @@ mod relative_moves;
 mod resonance;
 mod rings;
 mod scaling;
+mod shear_strength;
 mod slip_history;
 mod springs;
 mod springs_estimate;

@@ -132,6 +132,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
         profile,
         material: if is_modulus_fitted { Material::Effective(moduli) } else { definition.material },
         friction: if has(FitParameter::Friction) { fit.contact.friction() } else { definition.friction },
+        shear_strength: definition.shear_strength,
         preload: definition.preload,
         bulk: definition.bulk,
     }
