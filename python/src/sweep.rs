@@ -7,8 +7,7 @@ use stickslip_compute::Refusal;
 use stickslip_compute::Stop;
 use stickslip_compute::documents::Parse as _;
 use stickslip_compute::simulation::{self, Anew};
-use stickslip_wire::sweep::indices;
-use stickslip_wire::{Axis, Output, SweepRequest};
+use stickslip_wire::{Output, SweepRequest};
 
 use super::compute::named;
 use super::interrupt::interruptible;
@@ -47,17 +46,17 @@ impl Sweep {
         let format = named(format)?;
         let result =
             interruptible(py, |stop| self.plan.compute(0..self.plan.points(), threads, stop))?.map_err(refused)?;
-        let blocks = result.table(self.plan.checked()).blocks(format).collect::<Result<Vec<_>, _>>();
+        let blocks = result.blocks(self.plan.checked(), format).collect::<Result<Vec<_>, _>>();
         let blocks = blocks.map_err(|error| refused(Refusal::internal(error.to_string())))?;
         Ok(PyBytes::new(py, &blocks.concat()))
     }
 
-    /// The names of the columns: the axes, then the outputs.
+    /// The names of the columns: the axes or inputs, then the outputs.
     #[getter]
     fn columns(&self) -> Vec<String> {
-        let request = &self.plan.checked().request;
-        let (axes, outputs) = (request.axes.iter().map(Axis::column), request.outputs.iter().map(Output::column));
-        axes.chain(outputs).map(str::to_owned).collect()
+        let checked = self.plan.checked();
+        let outputs = checked.request.outputs.iter().map(Output::column);
+        checked.changing().into_iter().chain(outputs).map(str::to_owned).collect()
     }
 
     /// The rows of the points from `first` up to `end`: their numbers as `f64`, a row for each point, how
@@ -74,10 +73,12 @@ impl Sweep {
         }
         let result = interruptible(py, |stop| self.plan.compute(first..end, threads, stop))?.map_err(refused)?;
         let (checked, outputs) = (self.plan.checked(), self.plan.checked().outputs.len().max(1));
-        let mut bytes = Vec::with_capacity(8 * (result.values.len() + (end - first) * checked.axes.len()));
+        let (changing, number_of) = (checked.changing().len(), checked.numbers());
+        let mut bytes = Vec::with_capacity(8 * (result.values.len() + (end - first) * changing));
         for (row, values) in result.values.chunks(outputs).enumerate() {
-            let axes = indices(&checked.axes, first + row).map(|(axis, index)| axis.value(index));
-            bytes.extend(axes.chain(values.iter().copied()).flat_map(f64::to_ne_bytes));
+            let number = |column| number_of(first + row, column).and_then(|number| number.as_f64());
+            let changed = (0..changing).map(|column| number(column).unwrap_or(f64::NAN));
+            bytes.extend(changed.chain(values.iter().copied()).flat_map(f64::to_ne_bytes));
         }
         let failures = serde_json::to_string(&result.failures).unwrap_or_default();
         Ok((PyBytes::new(py, &bytes), result.failed, failures))

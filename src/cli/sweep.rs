@@ -58,7 +58,7 @@ impl Sweep {
         }
         let format = if self.json { "columns" } else { &self.format };
         let format = Format::named(format, &Format::TABLES).unwrap_or(Format::Csv);
-        let mut blocks = result.table(plan.checked()).blocks(format);
+        let mut blocks = result.blocks(plan.checked(), format);
         Ok(write(|out| blocks.try_for_each(|block| out.write_all(&block.map_err(io::Error::other)?)))?)
     }
 }

@@ -67,13 +67,14 @@ impl Sessions {
         Ok(HistoryPage { items: items.collect(), next })
     }
 
-    /// Adds to the states of a page where the part that stuck was, if a bulk stress comes with the force.
+    /// Adds to the states of a page what follows from the rest of a state and is not stored: where the part that stuck
+    /// was, if a bulk stress comes with the force, and the conductances, if the bodies conduct.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn mark_centres(&self, id: Uuid, page: &mut HistoryPage) -> Result<(), SessionError> {
         let session = self.find_own(id).await?;
-        if session.definition.bulk.is_some() {
+        if session.definition.bulk.is_some() || session.definition.material.conducts() {
             let first = LoadedSession::of_stored(session, &PrepareAnew).map_err(|error| damaged(id, &error))?;
             mark_centres(page, &first.contact);
         }
@@ -81,9 +82,12 @@ impl Sessions {
     }
 }
 
-/// The same for the contact of the page. The centre follows from the rest of a state, and is not stored.
+/// The same for the contact of the page.
 pub(super) fn mark_centres(page: &mut HistoryPage, contact: &Contact) {
     for HistoryItem { state, .. } in &mut page.items {
+        let conductance = contact.conductance(state.indentation);
         state.stick_centre = contact.stick_centre(&(*state).into());
+        state.electrical_conductance = conductance.electrical;
+        state.thermal_conductance = conductance.thermal;
     }
 }

@@ -116,6 +116,8 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             dissipated_energy: row.next()?,
             elastic_energy: row.next()?,
             memory_depth: usize::try_from(row.count()?).map_err(|error| row.invalid(error))?,
+            electrical_conductance: None,
+            thermal_conductance: None,
         },
         measured: measured(row)?,
         by: row.next::<Option<String>>()?.map(Arc::from),

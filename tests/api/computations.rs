@@ -85,5 +85,5 @@ async fn the_typed_client_has_every_computation() {
         })*};
     }
     agree!("/simulate" simulate, "/accuracy" accuracy, "/protocols" protocol, "/cycle" cycle, "/fretting" fretting,
-        "/wear" wear, "/profiles/fit" fit_profile, "/fit" fit_loops);
+        "/wear" wear, "/sliders" sliders, "/rolling" rolling, "/profiles/fit" fit_profile, "/fit" fit_loops);
 }

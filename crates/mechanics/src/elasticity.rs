@@ -3,6 +3,7 @@
 //! 1/E* = sum (1 - nu_i^2)/E_i (Hertz 1881) and 1/G* = sum (2 - nu_i)/(4 G_i) (Mindlin 1949), with
 //! G_i = E_i/(2 (1 + nu_i)). A rigid body adds nothing to either sum.
 
+use crate::conductance::{Conductance, Conduction};
 use crate::range;
 use crate::range::error::Error;
 
@@ -11,6 +12,7 @@ use crate::range::error::Error;
 pub struct Body {
     youngs_modulus: f64,
     poisson_ratio: f64,
+    conduction: Conduction,
 }
 
 impl Body {
@@ -28,7 +30,14 @@ impl Body {
         Ok(Body {
             youngs_modulus: range::YOUNGS_MODULUS.check(youngs_modulus)?,
             poisson_ratio: range::POISSON_RATIO.check(poisson_ratio)?,
+            conduction: Conduction::default(),
         })
+    }
+
+    /// The same body, which conducts like this.
+    #[must_use]
+    pub fn conducting(self, conduction: Conduction) -> Body {
+        Body { conduction, ..self }
     }
 
     pub(crate) fn normal_compliance(self) -> f64 {
@@ -168,6 +177,37 @@ impl Elasticity {
             }
             [Some(Body { poisson_ratio: nu, .. }), None] => Some(-(1.0 - 2.0 * nu) / (2.0 * (1.0 - nu))),
             _ => None,
+        }
+    }
+
+    /// How much stiffer under a normal load the pair may be at most than it is taken to be, relative: the stiffness with
+    /// full stick over that without friction is ln((1 + beta)/(1 - beta))/(2 beta) (Goodman 1962; Spence 1968), and
+    /// finite friction lies between. Zero where the bodies do not couple, `None` where Dundurs' beta is not known.
+    #[must_use]
+    pub fn coupling_bound(&self) -> Option<f64> {
+        // The series has the digits that the difference from 1 would lose.
+        let bound = |beta: f64| {
+            if beta.abs() < 1e-3 {
+                let square = beta * beta;
+                square * (1.0 / 3.0 + square * (1.0 / 5.0 + square / 7.0))
+            } else {
+                beta.atanh() / beta - 1.0
+            }
+        };
+        self.dundurs_beta().map(bound)
+    }
+
+    /// The conductances at the radius F_N'/(2 E*) that `radius` gives, m; it is asked for if a body conducts.
+    pub(crate) fn conductance(&self, radius: impl FnOnce() -> f64) -> Conductance {
+        let unit = self.unit_conductance();
+        if unit == Conductance::default() { unit } else { unit.times(radius()) }
+    }
+
+    /// The conductances of a round spot of radius 1 m.
+    fn unit_conductance(&self) -> Conductance {
+        match self.bodies {
+            [Some(first), Some(second)] => Conductance::of_unit_radius([first.conduction, second.conduction]),
+            _ => Conductance::default(),
         }
     }
 

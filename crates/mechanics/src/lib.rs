@@ -49,6 +49,7 @@
 //! |---|---|
 //! | [`protocol`], [`wear`] | which paths leave little shear stress? which shape does fretting wear leave in the end? |
 //! | [`fatigue`] | how near does a cycle of stresses bring the material to fatigue? |
+//! | [`sliders`], [`rolling`] | which springs with friction caps move like a contact? how does a cylinder roll? |
 //! | [`rings`], [`springs`] | what does motion in the plane do? what the discrete foundation of the paper? |
 //! | [`cycle`], [`closed_cycles`] | what does a contact do in a steady cycle, and which cycles has a path closed? |
 //! | [`subsurface`] | what is the stress in the bodies below the contact? |
@@ -58,13 +59,14 @@
 //! | `slip_history` | what is left of the path under a limit law, and what work does a move dissipate? |
 //! | [`Indenter`] | what does a contact ask of a profile, resolved once? |
 //! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
-//! | [`elasticity`] | which two moduli do the bodies have together? |
+//! | [`elasticity`], `conductance` | which two moduli do the bodies have together, and how do they conduct? |
 //! | `cells` | how are g and its integrals computed for any shape, in cells of radii with one series each? |
 //! | [`range`](mod@range) | which numbers are accepted, and what is refused? |
 //! | `numerics` | how are differences kept exact, roots found, functions integrated, and what is far away summed? |
 
 mod cells;
 pub mod closed_cycles;
+mod conductance;
 mod contact;
 pub mod cycle;
 pub mod elasticity;
@@ -76,6 +78,8 @@ pub mod profile;
 pub mod protocol;
 pub mod range;
 pub mod rings;
+pub mod rolling;
+pub mod sliders;
 mod slip_history;
 pub mod springs;
 pub mod subsurface;
@@ -89,6 +93,7 @@ pub mod wear;
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+pub use conductance::{Conductance, Conduction};
 pub use contact::Contact;
 pub use contact::accuracy::ErrorEstimate;
 pub use contact::normal::{ContactSummary, Preload};

@@ -14,9 +14,10 @@ use crate::{
     CycleRequest, EndEvent, EndReason, FitReply, FitRequest, ForkRequest, FrettingReply, FrettingRequest,
     FrictionReply, HistoryPage, JobList, JobReply, JobState, LoopFileReply, LoopPage, Machine, MoveReply, MoveRequest,
     NewSession, ObservationsReply, ObservationsRequest, PathReply, PathRequest, ProblemDocument, ProfileFitReply,
-    ProfileFitRequest, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, Residual,
-    ScanFileReply, SessionPage, SessionReply, SimulateReply, SimulateRequest, StateEvent, StressReply, StressRequest,
-    SubsurfaceReply, SubsurfaceRequest, SweepReply, SweepRequest, WearReply, WearRequest, WorkDensity,
+    ProfileFitRequest, ProtocolReply, ProtocolRequest, RelaxReply, RelaxRequest, RenameRequest, Residual, RollingReply,
+    RollingRequest, ScanFileReply, SessionPage, SessionReply, SimulateReply, SimulateRequest, SlidersReply,
+    SlidersRequest, StateEvent, StressReply, StressRequest, SubsurfaceReply, SubsurfaceRequest, SweepReply,
+    SweepRequest, WearReply, WearRequest, WorkDensity,
 };
 
 /// A handle on a service; clones share its connections. Every call fails with an [`Error`], and so may a stream of
@@ -137,6 +138,8 @@ impl Client {
         protocol: POST "/protocols" ProtocolRequest => ProtocolReply;
         fretting: POST "/fretting" FrettingRequest => FrettingReply;
         wear: POST "/wear" WearRequest => WearReply;
+        sliders: POST "/sliders" SlidersRequest => SlidersReply;
+        rolling: POST "/rolling" RollingRequest => RollingReply;
         fit_profile: POST "/profiles/fit" ProfileFitRequest => ProfileFitReply;
         fit_loops: POST "/fit" FitRequest => FitReply;
         create: POST "/contacts" CreateRequest + options => NewSession;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::subsurface::Side;
-use stickslip_mechanics::{Friction, Setup, elasticity};
+use stickslip_mechanics::{Conduction, Friction, Setup, elasticity};
 
 use super::line_profiles::BulkPerForce;
 use crate::prelude::*;
@@ -35,6 +35,12 @@ pub struct ElasticBody {
     pub youngs_modulus: f64 = range::YOUNGS_MODULUS,
     /// Poisson's ratio ν, a pure number.
     pub poisson_ratio: f64 = range::POISSON_RATIO,
+    /// Electrical resistivity ρ, Ω·m; of both bodies or of neither. The replies then have the electrical conductance of
+    /// the contact.
+    pub resistivity: Option<f64> = range::RESISTIVITY,
+    /// Thermal conductivity k, W/(m·K); of both bodies or of neither. The replies then have the thermal conductance of
+    /// the contact.
+    pub conductivity: Option<f64> = range::CONDUCTIVITY,
 }
 
 /// The reduced moduli of the pair of bodies.
@@ -217,6 +223,16 @@ impl Material {
         Some([first, second].map(|body| body.elastic().flatten()))
     }
 
+    /// Whether the contact has a conductance.
+    pub fn conducts(&self) -> bool {
+        let conducts = |body: &Body| {
+            matches!(
+                body, Body::Elastic(body) if body.resistivity.is_some() || body.conductivity.is_some()
+            )
+        };
+        self.bodies().is_some_and(|bodies| bodies.iter().any(conducts))
+    }
+
     /// Young's modulus of one of the bodies, Pa, where it is known.
     pub fn youngs_modulus(&self, body: BodyName) -> Option<f64> {
         match self.bodies()?.get(usize::from(body == BodyName::Second))? {
@@ -244,11 +260,30 @@ impl Material {
 
 fn check_bodies(bodies: &[Body], at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
     let [first, second] = bodies else { return None };
+    check_conduction([first, second], at, faults)?;
     match [first, second].map(Body::elastic) {
         [Some(first), Some(second)] => Some(elasticity::Elasticity::of_bodies(first?, second?)),
         [Some(body), None] | [None, Some(body)] => Some(elasticity::Elasticity::against_rigid(body?)),
         [None, None] => faults.refuse(at, "both bodies are rigid: one of them must be elastic"),
     }
+}
+
+/// Current and heat pass two bodies, so that what one of them says of itself the other must say too.
+fn check_conduction(bodies: [&Body; 2], at: JsonPath<'_>, faults: &mut Faults) -> Option<()> {
+    let given = |of: fn(&ElasticBody) -> Option<f64>| {
+        bodies.map(|body| if let Body::Elastic(body) = body { of(body) } else { None }).map(|value| value.is_some())
+    };
+    let properties =
+        [("resistivity", given(|body| body.resistivity)), ("conductivity", given(|body| body.conductivity))];
+    for (name, given) in properties {
+        let index = match given {
+            [true, false] => 0,
+            [false, true] => 1,
+            _ => continue,
+        };
+        faults.add(at.index(index).member(name), "the other body has none: give it for both bodies or for neither");
+    }
+    faults.none_within(at)
 }
 
 /// The constant of a body as its material has it, or else the request. Noted at `at` if they differ or, with what is
@@ -273,7 +308,11 @@ impl Body {
     /// It for the mechanics, unless it is rigid; none within for one that is out of its limits.
     fn elastic(&self) -> Option<Option<elasticity::Body>> {
         match self {
-            Body::Elastic(body) => Some(elasticity::Body::new(body.youngs_modulus, body.poisson_ratio).ok()),
+            Body::Elastic(ElasticBody { youngs_modulus, poisson_ratio, resistivity, conductivity }) => Some(
+                elasticity::Body::new(*youngs_modulus, *poisson_ratio)
+                    .and_then(|body| Ok(body.conducting(Conduction::new(*resistivity, *conductivity)?)))
+                    .ok(),
+            ),
             Body::Rigid(Rigid::Rigid) => None,
         }
     }

@@ -46,8 +46,10 @@ pub mod profile_fit;
 pub mod protocol;
 pub mod reply;
 mod request;
+pub mod rolling;
 pub mod session;
 pub mod simulate;
+pub mod sliders;
 pub mod stress;
 pub mod subsurface;
 pub mod sweep;
@@ -61,7 +63,8 @@ pub use simulate::Steps;
 pub use {
     accuracy::*, check::*, closed_cycle::*, cycle::*, definition::*, document::*, event::*, files::*, fit::*,
     fretting::*, history::*, job::*, observation::*, parse::*, path::*, plane::*, prepare::*, problem::*, profile::*,
-    profile_fit::*, protocol::*, reply::*, session::*, simulate::*, stress::*, subsurface::*, sweep::*, wear::*,
+    profile_fit::*, protocol::*, reply::*, rolling::*, session::*, simulate::*, sliders::*, stress::*, subsurface::*,
+    sweep::*, wear::*,
 };
 
 /// Schema, member and keywords of every limit.
@@ -73,7 +76,7 @@ pub fn all_limits() -> Vec<(&'static str, &'static str, serde_json::Value)> {
     of_all! {
         AccuracyRequest, CreateRequest, CycleRequest, FitRequest, ForkRequest, FrettingRequest, MoveRequest,
         ObservationsRequest, PathRequest, ProfileFitRequest, ProtocolRequest, RelaxRequest, RenameRequest,
-        SimulateRequest, SubsurfaceRequest, SweepRequest, WearRequest
+        RollingRequest, SimulateRequest, SlidersRequest, SubsurfaceRequest, SweepRequest, WearRequest
     }
     let members =
         |(schema, members): (_, Vec<_>)| members.into_iter().map(move |(member, keywords)| (schema, member, keywords));

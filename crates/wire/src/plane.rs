@@ -136,7 +136,7 @@ pub enum SimulatedPath {
 
 replies! {
 /// The state after a move in the plane.
-pub struct PlanarState: Copy, Default of rings::PlanarState {
+pub struct PlanarState: Copy, Default omits Option {
     /// Tangential displacement of the indenter along x and y, m.
     pub displacement: [f64; 2],
     /// Tangential force along x and y, N; in a virgin contact it points along the displacement.
@@ -156,6 +156,10 @@ pub struct PlanarState: Copy, Default of rings::PlanarState {
     pub dissipated_energy: f64,
     /// Energy stored in the tangential deformation, J.
     pub elastic_energy: f64,
+    /// Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone.
+    pub electrical_conductance: Option<f64>,
+    /// Thermal conductance of the contact, W/K, if its bodies have a `conductivity`.
+    pub thermal_conductance: Option<f64>,
 }
 
 /// Stresses along the radius at the end of a path in the plane; they are the same at every angle. An array that was not

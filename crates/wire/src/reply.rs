@@ -28,6 +28,10 @@ pub struct ContactSummary: Default omits Option of mechanics::ContactSummary {
     pub gross_slip_displacement: f64,
     /// Tangential force at gross slip, μ F_N, N.
     pub gross_slip_force: f64,
+    /// Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone.
+    pub electrical_conductance: Option<f64>,
+    /// Thermal conductance of the contact, W/K, if its bodies have a `conductivity`.
+    pub thermal_conductance: Option<f64>,
 }
 
 /// The state after a move.
@@ -55,6 +59,10 @@ pub struct State: Copy, Default omits Option of mechanics::State {
     pub elastic_energy: f64,
     /// Number of pieces of the slip history.
     pub memory_depth: usize,
+    /// Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone.
+    pub electrical_conductance: Option<f64>,
+    /// Thermal conductance of the contact, W/K, if its bodies have a `conductivity`.
+    pub thermal_conductance: Option<f64>,
 }
 }
 
@@ -128,6 +136,10 @@ pub struct Accuracy: Default omits Option {
     pub count: Option<usize>,
     /// Number of steps on the whole path in the finest discretisation of the rings.
     pub steps: Option<usize>,
+    /// How much stiffer under a normal load the bodies may be at most than they are taken to be, a relative number, if
+    /// Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts and load
+    /// curves, for which no bound is known.
+    pub coupling_bound: Option<Option<f64>>,
     /// Processor time of the request without HTTP, s. It includes the check, the preparation of the profile unless that
     /// was cached, and the loading of a stored contact, and excludes the time in which other requests ran instead.
     pub compute_time: f64,
@@ -193,7 +205,7 @@ pub fn finite(value: f64) -> Option<f64> {
 
 same_members! {
     mechanics::State [State] displacement force indentation normal_force contact_radius stick_radius stick_centre regime
-    dissipated_energy elastic_energy memory_depth
+    dissipated_energy elastic_energy memory_depth electrical_conductance thermal_conductance
 }
 
 impl Residual {

@@ -1,18 +1,23 @@
 //! The body of `POST /sweep`, and its table.
 
 mod column;
+mod inputs;
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use serde_json::Number;
 
-use super::json_value::{JsonValue, Pointer};
+use super::json_value::JsonValue;
+pub use super::json_value::Pointer;
 use super::parse::parse_value;
 use super::simulate::SimulateRequest;
 use crate::prelude::*;
 use column::ColumnName;
 
 pub use column::{NamedOutput, Output};
+use inputs::{INPUTS, SAMPLES};
+pub use inputs::{Input, Normal, Samples, UncertainInput, Uniform};
 
 /// How far from a whole number, relatively, a value may be that goes to a field of whole numbers; it is rounded then.
 const WHOLE: f64 = 1e-9;
@@ -31,8 +36,8 @@ const SWEEP_POINTS: usize = 2_000_000;
 const SWEEP_NUMBERS: usize = 8_000_000;
 
 requests! {
-/// Many simulations that differ in up to three numbers, and the numbers of each reply to return. The points are all
-/// combinations of the values of the axes, with the last axis changing fastest.
+/// Many simulations that differ in a few numbers, and the numbers of each reply to return: `axes`, whose values are
+/// combined in all ways with the last axis changing fastest, or `inputs`, which are uncertain.
 #[schema(example = json!({
     "base": {
         "contact": ContactDefinition::example(),
@@ -46,7 +51,14 @@ pub struct SweepRequest {
     #[schema(value_type = Object)]
     pub base: JsonValue,
     /// The numbers that change.
-    pub axes: Vec<Axis> = Items(AXES),
+    pub axes: Option<Vec<Axis>> = Items(AXES),
+    /// The numbers that are uncertain, in place of `axes`; the reply is then an `UncertaintyReply`.
+    pub inputs: Option<Vec<Input>> = Items(INPUTS),
+    /// Base points for `inputs`, each of which takes as many simulations as there are inputs, and two more; 1024 if left
+    /// out.
+    pub samples: Option<usize> = SAMPLES,
+    /// The samples of two sweeps with the same seed are the same; 0 if left out.
+    pub seed: Option<u64>,
     /// JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
     /// point lacks the number, such as the third of two peaks, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]
@@ -99,6 +111,47 @@ pub struct SweepReply {
     pub failures: Vec<PointFailure>,
 }
 
+/// What uncertain inputs mean for the outputs of a simulation (GUM, supplement 1).
+pub struct UncertaintyReply {
+    /// The outputs.
+    pub outputs: Vec<UncertainOutput>,
+    /// Number of points.
+    pub points: usize,
+    /// Number of points without a result: where a number is out of the range of its field, for example. The numbers
+    /// above are those of the other points.
+    pub failed: u64,
+    /// The first points without a result.
+    pub failures: Vec<PointFailure>,
+    /// Warnings about the result.
+    pub warnings: Vec<Warning>,
+}
+
+/// The distribution of an output; `null` where too few points have it.
+pub struct UncertainOutput {
+    /// The name of the output: its own, else its pointer.
+    pub name: String,
+    /// The mean, in the unit of the field.
+    pub mean: Option<f64>,
+    /// Standard error of the mean by the number of points, in the unit of the field.
+    pub mean_error: Option<f64>,
+    /// The standard uncertainty, in the unit of the field.
+    pub standard_uncertainty: Option<f64>,
+    /// Standard error of the standard uncertainty by the number of points, in the unit of the field.
+    pub standard_uncertainty_error: Option<f64>,
+    /// The interval that holds 95 % of the values, with 2.5 % on either side, in the unit of the field.
+    pub interval: Option<[f64; 2]>,
+    /// The share of the variance that each input has by itself, by its name: Sobol's index of first order.
+    pub shares: BTreeMap<String, Share>,
+}
+
+/// A share of a variance.
+pub struct Share: Copy {
+    /// The share, a pure number; by chance slightly below 0 or above 1.
+    pub value: Option<f64>,
+    /// Its standard error by the number of points, a pure number.
+    pub standard_error: Option<f64>,
+}
+
 /// A point without a result.
 pub struct PointFailure: Eq {
     /// The row, counted from 0.
@@ -114,13 +167,25 @@ pub struct PointFailure: Eq {
 }
 }
 
+/// The reply to a sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, ToSchema)]
+#[serde(untagged)]
+pub enum SweepAnswer {
+    /// Of `axes`.
+    Table(SweepReply),
+    /// Of `inputs`.
+    Uncertainty(UncertaintyReply),
+}
+
 /// A sweep whose axes lead to numbers, each within the limits of an axis; whether a point is valid is not known yet.
 #[derive(Clone, Debug)]
 pub struct CheckedSweep {
     /// The request as it was sent.
     pub request: SweepRequest,
-    /// The axes.
+    /// The axes; none with samples.
     pub axes: Vec<AxisValues>,
+    /// The samples, in place of axes.
+    pub samples: Option<Samples>,
     /// The outputs.
     pub outputs: Vec<Pointer>,
     /// How many points.
@@ -152,14 +217,24 @@ impl Document for SweepRequest {
 
     fn checked(mut self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         // Too many are a fault already, and each is compared with all others.
-        self.axes.truncate(*AXES.end());
+        let mut given = self.axes.take();
+        given.iter_mut().for_each(|axes| axes.truncate(*AXES.end()));
+        self.axes = given;
+        if self.axes.is_some() == self.inputs.is_some() {
+            faults.add(JsonPath::Root, "expected one of `axes`, `inputs`");
+        }
         self.outputs.truncate(*OUTPUTS.end());
         let at = JsonPath::Root.member("axes");
-        let checked = self.axes.iter().enumerate().map(|(index, axis)| axis.check(at.index(index), faults));
+        let checked = self.axes().iter().enumerate().map(|(index, axis)| axis.check(at.index(index), faults));
         let mut axes: Vec<AxisValues> = checked.flatten().collect();
+        let samples = self.check_inputs(faults);
         let outputs = self.check_outputs(faults);
         self.check_names(faults);
-        let points = axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count()));
+        let points = match &samples {
+            Some(samples) => samples.points(),
+            None => axes.iter().fold(1_usize, |points, axis| points.saturating_mul(axis.count())),
+        };
+        let at = if samples.is_some() { JsonPath::Root.member("samples") } else { at };
         if points > SWEEP_POINTS {
             faults.add(at, format_args!("{points} points: allowed are {}", SWEEP_POINTS));
         } else if points.saturating_mul(outputs.len()) > SWEEP_NUMBERS {
@@ -174,11 +249,19 @@ impl Document for SweepRequest {
         if faults.is_empty() {
             find_kinds(&self.base.0, &mut axes, faults);
         }
-        Some(CheckedSweep { request: self, axes, outputs, points })
+        if let Some(samples) = samples.as_ref().filter(|_| faults.is_empty()) {
+            check_fields(&self.base.0, samples, faults);
+        }
+        Some(CheckedSweep { request: self, axes, samples, outputs, points })
     }
 }
 
 impl SweepRequest {
+    /// The axes, if there are any.
+    pub fn axes(&self) -> &[Axis] {
+        self.axes.as_deref().unwrap_or_default()
+    }
+
     fn check_outputs(&self, faults: &mut Faults) -> Vec<Pointer> {
         let at = JsonPath::Root.member("outputs");
         let mut outputs: Vec<Pointer> = Vec::new();
@@ -187,7 +270,7 @@ impl SweepRequest {
             let at = output.place_of_pointer(&at);
             match Pointer::parse(text) {
                 None => faults.add(at, NO_POINTER),
-                Some(pointer) if outputs.contains(&pointer) || self.axes.iter().any(|axis| axis.pointer == text) => {
+                Some(pointer) if outputs.contains(&pointer) || self.axes().iter().any(|axis| axis.pointer == text) => {
                     faults.add(at, "another column has the same pointer");
                 }
                 Some(pointer) => outputs.push(pointer),
@@ -290,21 +373,58 @@ impl AxisValues {
 impl CheckedSweep {
     /// Puts the values of a point into a copy of the base.
     pub fn put(&self, document: &mut Value, point: usize) {
+        // Whether there is a place for each number has been checked with the kinds of fields.
         for (axis, index) in indices(&self.axes, point) {
-            // Whether there is a place for it has been checked with the kinds of fields.
             axis.pointer.put(document, axis.number(index));
         }
+        for (index, input) in self.inputs().iter().enumerate() {
+            let number = self.samples.as_ref().and_then(|samples| Number::from_f64(samples.value(point, index)));
+            for pointer in &input.pointers {
+                pointer.put(document, number.clone().unwrap_or_else(|| Number::from(0)));
+            }
+        }
+    }
+
+    /// The inputs, if there are any.
+    pub fn inputs(&self) -> &[UncertainInput] {
+        self.samples.as_ref().map_or(&[], |samples| &samples.inputs)
+    }
+
+    /// Names of the numbers that change.
+    pub fn changing(&self) -> Vec<&str> {
+        let axes = self.request.axes().iter().map(Axis::column);
+        axes.chain(self.inputs().iter().map(|input| input.name.as_str())).collect()
+    }
+
+    /// The numbers that change, by their point and column.
+    pub fn numbers(&self) -> impl Fn(usize, usize) -> Option<Number> + Clone + Send + Sync + use<> {
+        let (axes, samples) = (Arc::new(self.axes.clone()), Arc::new(self.samples.clone()));
+        move |point, column| match &*samples {
+            Some(samples) => Number::from_f64(samples.value(point, column)),
+            None => indices(&axes, point).nth(column).map(|(axis, index)| axis.number(index)),
+        }
+    }
+
+    /// The fields that change.
+    pub fn pointers(&self) -> impl Iterator<Item = &Pointer> {
+        let of_axes = self.axes.iter().map(|axis| &axis.pointer);
+        of_axes.chain(self.inputs().iter().flat_map(|input| &input.pointers))
     }
 
     /// The JSON pointer, in the sweep, to what `pointer` is in the body of a point.
     pub fn place_of(&self, pointer: &str) -> String {
         let axis = self.axes.iter().position(|axis| axis.pointer.to_string() == pointer);
-        axis.map_or_else(|| format!("/base{pointer}"), |index| format!("/axes/{index}"))
+        let has = |input: &UncertainInput| input.pointers.iter().any(|own| own.to_string() == pointer);
+        match (axis, self.inputs().iter().position(has)) {
+            (Some(index), _) => format!("/axes/{index}"),
+            (_, Some(index)) => format!("/inputs/{index}"),
+            _ => format!("/base{pointer}"),
+        }
     }
 }
 
 /// The values of the axes at a point, by their indices.
-pub fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&AxisValues, usize)> {
+fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&AxisValues, usize)> {
     let mut below = axes.iter().fold(1, |points: usize, axis| points.saturating_mul(axis.count()));
     let mut rest = point;
     axes.iter().map(move |axis| {
@@ -313,6 +433,25 @@ pub fn indices(axes: &[AxisValues], point: usize) -> impl Iterator<Item = (&Axis
         rest = rest.checked_rem(below).unwrap_or(0);
         (axis, index)
     })
+}
+
+/// Finds inputs that go to no field, or to one of whole numbers.
+fn check_fields(base: &Value, samples: &Samples, faults: &mut Faults) {
+    let at = JsonPath::Root.member("inputs");
+    let mut document = base.clone();
+    for (index, input) in samples.inputs.iter().enumerate() {
+        let number = Number::from_f64(0.5).unwrap_or_else(|| Number::from(1));
+        if !input.pointers.iter().all(|pointer| pointer.put(&mut document, number.clone())) {
+            return faults.add(at.index(index), "the base has no number there, and no member for one");
+        }
+    }
+    if let Err(fault) = parse_value::<SimulateRequest>(&document) {
+        let has = |input: &UncertainInput| input.pointers.iter().any(|pointer| pointer.to_string() == fault.pointer);
+        match samples.inputs.iter().position(has) {
+            Some(index) => faults.add(at.index(index), fault.detail),
+            None => faults.add(JsonPath::Pointer(&format!("/base{}", fault.pointer)), fault.detail),
+        }
+    }
 }
 
 /// Determines by trial which fields take whole numbers; this also finds fields that are no numbers, and faults of the

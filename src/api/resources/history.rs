@@ -119,9 +119,8 @@ impl MoveSeries for History {
             observed("predicted_force", |observed| observed.predicted),
             observed("innovation", |observed| observed.innovation),
         ]);
-        if items.first().is_some_and(|item| item.state.stick_centre.is_some()) {
-            columns.push(Column::floats("stick_centre", "m", |row| items[row].state.stick_centre));
-        }
+        let first = items.first().map(|item| &item.state);
+        columns.extend(columns_of_some_states(first, |row| &items[row].state));
         if self.names_makers {
             columns.push(Column::new("by", Some(""), Cells::Words(Box::new(|row| items[row].by.as_deref()))));
         }

@@ -7,7 +7,7 @@ use futures::StreamExt as _;
 use super::prelude::*;
 use crate::api::query_parameters::closed;
 use crate::store::StreamEvent;
-use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepReply};
+use stickslip_wire::{JobEndEvent, JobList, JobReply, JobState, SweepAnswer};
 
 parameters! {
     pub struct TableQuery {
@@ -52,7 +52,7 @@ pub async fn get_job(JobPath { app, id, .. }: JobPath, _: CheckedQuery<()>) -> R
 /// The table, once the job is done. It is kept for a day.
 #[utoipa::path(
     get, path = "/jobs/{id}/result", tag = "jobs", params(JobPath, TableQuery),
-    responses((status = 200, description = "The table", body = SweepReply))
+    responses((status = 200, description = "The table, or the document of uncertain inputs", body = SweepAnswer))
 )]
 pub async fn get_job_result(
     JobPath { app, id, context }: JobPath,
@@ -61,7 +61,7 @@ pub async fn get_job_result(
     let format = query.format?;
     context.reserve(app.jobs.size(id).await?).await?;
     let (sweep, result) = app.jobs.result(id).await?;
-    let table = Body::from_stream(futures::stream::iter(result.table(&sweep).blocks(format)));
+    let table = Body::from_stream(futures::stream::iter(result.blocks(&sweep, format)));
     Ok(formats::reply(format, table))
 }
 

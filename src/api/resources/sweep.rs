@@ -11,7 +11,7 @@ use crate::jobs::AT_ONCE;
 use stickslip_compute::Stop as _;
 use stickslip_compute::simulation::bytes::NUMBER;
 use stickslip_compute::simulation::{Failure, Sweep, SweepResult};
-use stickslip_wire::{JobReply, SweepReply, SweepRequest};
+use stickslip_wire::{JobReply, SweepAnswer, SweepRequest};
 
 /// The most numbers of a table that is kept for a retry as a whole.
 const KEPT_NUMBERS: usize = 65_536;
@@ -26,7 +26,7 @@ const KEPT_NUMBERS: usize = 65_536;
 #[utoipa::path(
     post, path = "/sweep", tag = "simulation", params(TableQuery, Prefer, IdempotencyKey), request_body = SweepRequest,
     responses(
-        (status = 200, description = "The table", body = SweepReply),
+        (status = 200, description = "The table", body = SweepAnswer),
         (status = 202, description = "The job that computes the table", body = JobReply, headers(
             ("Location" = String, description = "The path of the job"),
             ("Preference-Applied" = String, description = "`respond-async`, if that was asked for")))
@@ -86,6 +86,6 @@ pub async fn run_sweep(
         }
     };
     context.reserve(table_bytes).await?;
-    let table = Body::from_stream(futures::stream::iter(result.table(sweep.checked()).blocks(format)));
+    let table = Body::from_stream(futures::stream::iter(result.blocks(sweep.checked(), format)));
     Ok(formats::reply(format, table))
 }

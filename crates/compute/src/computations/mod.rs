@@ -16,7 +16,9 @@ mod prelude;
 mod profile_fit;
 mod protocol;
 mod residual;
+mod rolling;
 mod simulate;
+mod sliders;
 mod stress;
 mod subsurface;
 mod wear;
@@ -44,7 +46,7 @@ pub use loop_fit::FitLoops;
 pub use moves::{Moved, dry_run_relax, make_moves, shown_states};
 pub use protocol::find_from_state;
 pub use residual::ResidualTask;
-pub use simulate::state_columns;
+pub use simulate::{columns_of_some_states, state_columns};
 pub use stress::StressTask;
 
 /// All computations.
@@ -56,6 +58,8 @@ pub fn entries() -> Vec<Entry> {
         Entry::of::<cycle::Cycle>(),
         Entry::of::<fretting::Fretting>(),
         Entry::of::<wear::Wear>(),
+        Entry::of::<sliders::FindSliders>(),
+        Entry::of::<rolling::Roll>(),
         Entry::of::<subsurface::SubsurfaceOfPath>(),
         Entry::of::<profile_fit::FitProfile>(),
         Entry::of::<loop_fit::FitLoops>(),

@@ -190,10 +190,8 @@ impl Outcome for SimulateReply {
                 Some(stress::table(stress::place_column(stress), &stress::fields(stress)))
             }
             _ => {
-                let mut columns: Vec<Column<'_>> = state_columns(|row| &self.steps[row]).into();
-                if self.steps.first().is_some_and(|state| state.stick_centre.is_some()) {
-                    columns.push(Column::floats("stick_centre", "m", |row| self.steps[row].stick_centre));
-                }
+                let (state, first) = (|row: usize| &self.steps[row], self.steps.first());
+                let columns = state_columns(state).into_iter().chain(columns_of_some_states(first, state)).collect();
                 Some(Table::flat(self.steps.len(), columns))
             }
         }
@@ -251,6 +249,24 @@ pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) 
         floats("elastic_energy", "J", |state| state.elastic_energy),
         Column::counts("memory_depth", move |row| state(row).memory_depth as u64),
     ]
+}
+
+/// Name, unit and value of a column.
+type OptionalColumn = (&'static str, &'static str, fn(&State) -> Option<f64>);
+
+/// The columns of a state that not every contact has, if the first state has them.
+pub fn columns_of_some_states<'a>(
+    first: Option<&State>,
+    state: impl Fn(usize) -> &'a State + Copy + Send + 'a,
+) -> Vec<Column<'a>> {
+    let columns: [OptionalColumn; 3] = [
+        ("stick_centre", "m", |state| state.stick_centre),
+        ("electrical_conductance", "S", |state| state.electrical_conductance),
+        ("thermal_conductance", "W/K", |state| state.thermal_conductance),
+    ];
+    let has = |(_, _, of): &OptionalColumn| first.is_some_and(|first| of(first).is_some());
+    let column = |(name, unit, of): OptionalColumn| Column::floats(name, unit, move |row| of(state(row)));
+    columns.into_iter().filter(has).map(column).collect()
 }
 
 /// A panel for each unit.

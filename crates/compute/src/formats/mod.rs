@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::Nanoseconds;
 use stickslip_plot::Drawing;
 
-pub use table::{Block, Cells, Column, Table, TableStream};
+pub use table::{Block, Blocks, Cells, Column, Table, TableStream};
 
 /// Bytes that a plot takes while it is drawn: its pixels, and the outlines of a rough field.
 const PLOT: usize = 32 * 1024 * 1024;

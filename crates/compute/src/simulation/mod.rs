@@ -150,6 +150,7 @@ impl Failure {
                 | mechanics::Error::NoSurface { .. }
                 | mechanics::Error::BodiesNeeded
                 | mechanics::Error::LineContact(_)
+                | mechanics::Error::OnlyCylinder
                 | mechanics::Error::RoundContact(_)
                 | mechanics::Error::ShearStrength(_)
                 | mechanics::Error::BulkNeedsConstantLoad

@@ -6,6 +6,7 @@ use stickslip_wire::Solver;
 use stickslip_wire::plane::{PlanarPlan, PlanarReply, PlanarState, PlanarStress, SimulationReply};
 
 use super::run::{coulomb, refused_at, simulate};
+use super::stated_accuracy::coupling_bound;
 use super::warnings::{FarMove, stress_warning, warnings_at};
 use crate::prelude::*;
 
@@ -51,6 +52,8 @@ fn along_line(
         regime: state.regime,
         dissipated_energy: state.dissipated_energy,
         elastic_energy: state.elastic_energy,
+        electrical_conductance: state.electrical_conductance,
+        thermal_conductance: state.thermal_conductance,
     };
     let mut states: Vec<PlanarState> = steps.iter().map(state).collect();
     as_given(plane, &mut states);
@@ -84,6 +87,23 @@ fn turned(stress: Stress, direction: [f64; 2]) -> PlanarStress {
     }
 }
 
+fn shown_state(solution: &Solution, state: &rings::PlanarState) -> PlanarState {
+    let conductance = solution.pressed().conductance(state.indentation);
+    PlanarState {
+        displacement: state.displacement,
+        force: state.force,
+        indentation: state.indentation,
+        normal_force: state.normal_force,
+        contact_radius: state.contact_radius,
+        stick_radius: state.stick_radius,
+        regime: state.regime.into(),
+        dissipated_energy: state.dissipated_energy,
+        elastic_energy: state.elastic_energy,
+        electrical_conductance: conductance.electrical,
+        thermal_conductance: conductance.thermal,
+    }
+}
+
 fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Result<PlanarReply, Failure> {
     let timer = Timer::start(stop);
     let (count, reason) = match simulation.solver {
@@ -113,7 +133,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
         .chain(stress_warning(simulation.stress.is_some(), stress_error))
         .chain(far.warning())
         .collect();
-    let mut states: Vec<PlanarState> = solution.states.iter().map(|state| (*state).into()).collect();
+    let mut states: Vec<PlanarState> = solution.states.iter().map(|state| shown_state(&solution, state)).collect();
     as_given(plane, &mut states);
     let losses = turn_losses(plane, states.iter().map(|state| state.dissipated_energy));
     stop.check()?;
@@ -127,6 +147,7 @@ fn by_rings(simulation: &Simulation, plane: &PlanarPlan, stop: &dyn Stop) -> Res
             reason: reason.to_owned(),
             force_error,
             stress_error,
+            coupling_bound: coupling_bound(solution.pressed()),
             work_error: Some(solution.work_error),
             count: Some(solution.count),
             steps: Some(solution.steps),

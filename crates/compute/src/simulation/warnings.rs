@@ -2,6 +2,8 @@
 
 use stickslip_mechanics::{Indenter, in_unit};
 
+use super::stated_accuracy::coupling_bound;
+
 use crate::prelude::*;
 
 /// Dundurs' β beyond which the bodies are no longer treated as elastically similar; round-off of similar bodies stays
@@ -164,7 +166,14 @@ pub fn warnings_at(
             "dundurs_beta",
             format!(
                 "the bodies are unlike (Dundurs' beta = {beta:.4}): pressing them together also shears them, which is \
-                    neglected"
+                    neglected{}",
+                coupling_bound(contact)
+                    .flatten()
+                    .map(|bound| format!(
+                        "; by this alone the normal stiffness is larger by at most {:.2} %",
+                        100.0 * bound
+                    ))
+                    .unwrap_or_default()
             ),
         );
     }

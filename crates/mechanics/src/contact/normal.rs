@@ -57,6 +57,10 @@ pub struct ContactSummary {
     pub gross_slip_displacement: f64,
     /// Tangential force of gross slip, mu F_N, N.
     pub gross_slip_force: f64,
+    /// Electrical conductance, S, if the resistivity of both bodies is known.
+    pub electrical_conductance: Option<f64>,
+    /// Thermal conductance, W/K, if the conductivity of both bodies is known.
+    pub thermal_conductance: Option<f64>,
 }
 
 /// ```
@@ -76,6 +80,7 @@ impl ContactSummary {
         normal_force: f64,
     ) -> ContactSummary {
         let indentation = edge.level.value();
+        let conductance = elasticity.conductance(|| if indentation < 0.0 { 0.0 } else { edge.radius });
         ContactSummary {
             e_star: elasticity.e_star(),
             g_star: elasticity.g_star(),
@@ -89,6 +94,8 @@ impl ContactSummary {
             },
             gross_slip_displacement: friction * elasticity.e_star() / elasticity.g_star() * indentation.max(0.0),
             gross_slip_force: friction * normal_force,
+            electrical_conductance: conductance.electrical,
+            thermal_conductance: conductance.thermal,
         }
     }
 

@@ -3,6 +3,7 @@
 use super::Contact;
 use super::normal::{self, ContactSummary};
 use super::state::{Regime, State};
+use crate::conductance::Conductance;
 use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
@@ -235,9 +236,17 @@ impl Contact {
         let edge = self.history.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();
+        let conductance = self.conductance(edge.level.value());
         if let Some(contact) = self.tangential() {
             let (normal_force, contact_radius) = (self.normal_force(), self.contact_radius());
-            return State { indentation: edge.level.value(), normal_force, contact_radius, ..contact.state() };
+            return State {
+                indentation: edge.level.value(),
+                normal_force,
+                contact_radius,
+                electrical_conductance: conductance.electrical,
+                thermal_conductance: conductance.thermal,
+                ..contact.state()
+            };
         }
         let state = State {
             displacement: self.displacement.value(),
@@ -252,8 +261,34 @@ impl Contact {
             dissipated_energy: self.dissipated.value(),
             elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
             memory_depth: self.memory_depth(),
+            electrical_conductance: conductance.electrical,
+            thermal_conductance: conductance.thermal,
         };
         State { stick_centre: self.stick_centre(&state), ..state }
+    }
+
+    /// The conductances at an indentation, m; zero if the bodies are apart.
+    ///
+    /// ```
+    /// use stickslip_mechanics::{Body, Conduction, Contact, Elasticity, Preload, Profile, Setup, Sphere};
+    ///
+    /// let tin = Body::new(5e10, 0.36)?.conducting(Conduction::new(Some(1e-7), None)?);
+    /// let contact = Contact::new(Setup {
+    ///     profile: Profile::Sphere(Sphere::new(0.01)?),
+    ///     elasticity: Elasticity::of_bodies(tin, tin),
+    ///     friction: 0.3,
+    ///     preload: Preload::ContactRadius(1e-4),
+    /// })?;
+    /// // Holm: R = rho/(2 a).
+    /// let conductance = contact.conductance(contact.indentation());
+    /// assert!((conductance.electrical.unwrap() - 2000.0).abs() < 1e-9);
+    /// assert_eq!(conductance.thermal, None);
+    /// # Ok::<(), stickslip_mechanics::Error>(())
+    /// ```
+    #[must_use]
+    pub fn conductance(&self, indentation: f64) -> Conductance {
+        let level = DoubleDouble::from(indentation);
+        self.elasticity.conductance(|| if indentation < 0.0 { 0.0 } else { self.indenter.point(level).radius })
     }
 
     fn stick(&self) -> (f64, Regime) {

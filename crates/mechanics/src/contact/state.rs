@@ -139,4 +139,8 @@ pub struct State {
     pub elastic_energy: f64,
     /// Number of straight pieces that the slip history consists of.
     pub memory_depth: usize,
+    /// Electrical conductance, S, if the resistivity of both bodies is known.
+    pub electrical_conductance: Option<f64>,
+    /// Thermal conductance, W/K, if the conductivity of both bodies is known.
+    pub thermal_conductance: Option<f64>,
 }

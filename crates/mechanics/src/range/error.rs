@@ -121,6 +121,9 @@ pub enum Error {
         /// Its type in JSON.
         profile: &'static str,
     },
+    /// A profile that does not roll.
+    #[error("rolling is known for a cylinder alone")]
+    OnlyCylinder,
     /// Reduced moduli where the bodies must be known.
     #[error("the tangential compliance of an ellipse depends on Poisson's ratio of each body: name the two bodies")]
     BodiesNeeded,

@@ -81,6 +81,8 @@ quantities! {
     YoungsModulus = "youngs_modulus", YOUNGS_MODULUS: 1e-3 to 1e18 "Pa", "Young's modulus of a body.";
     PoissonRatio = "poisson_ratio", POISSON_RATIO: -0.99 to 0.5 "",
         "Poisson's ratio of a body; auxetic bodies are allowed.";
+    Resistivity = "resistivity", RESISTIVITY: 1e-12 to 1e20 "Ω·m", "Electrical resistivity of a body.";
+    Conductivity = "conductivity", CONDUCTIVITY: 1e-6 to 1e6 "W/(m·K)", "Thermal conductivity of a body.";
     EStar = "e_star", E_STAR: 1e-3 to 1e18 "Pa", "The reduced modulus E*.";
     GStar = "g_star", G_STAR: 1e-3 to 1e18 "Pa", "The reduced shear modulus G*.";
     Friction = "friction", FRICTION: 0.0 to 100.0 "",
@@ -119,6 +121,10 @@ quantities! {
     RingTolerance = "tolerance", RING_TOLERANCE: 1e-300 to 1e300 "",
         "What the error of a path by rings is to stay below, over mu F_N.";
     Turns = "turns", TURNS: -1e9 to 1e9 "", "A place on an ellipse, in turns from its beginning.";
+    Sliders = "count", "How many sliders stand for a contact.";
+    SliderError = "error", "The error of a set of sliders, of the force or of the work of a cycle.";
+    RollingRatio = "ratio", "The tangential force of rolling over mu F_N.";
+    RollingCreep = "creep", "The creep of rolling.";
     RingCount = "count", RING_COUNT: 4.0 to 160.0 "", "How many rings a contact may have that is moved in the plane.";
     CutoffRadius = "cutoff_radius", "Radius from which on the peaks of a protocol are equal.";
     ProtocolTarget = "target", "Shear stress that a protocol may leave, relative to mu times the pressure.";

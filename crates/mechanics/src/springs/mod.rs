@@ -331,6 +331,7 @@ impl Springs {
         } else {
             Regime::GrossSlip
         };
+        let conductance = self.virgin.conductance(self.indentation);
         State {
             displacement: self.displacement,
             force: self.force() + 0.0,
@@ -343,6 +344,8 @@ impl Springs {
             dissipated_energy: self.dissipated,
             elastic_energy: energy,
             memory_depth: self.in_contact().count(),
+            electrical_conductance: conductance.electrical,
+            thermal_conductance: conductance.thermal,
         }
     }
 }

@@ -73,7 +73,7 @@ impl SweepRequest {
     /// Notes names that an earlier column has.
     pub(super) fn check_names(&self, faults: &mut Faults) {
         let (axes, outputs) = (JsonPath::Root.member("axes"), JsonPath::Root.member("outputs"));
-        let of_axes = self.axes.iter().enumerate().map(|(index, axis)| (axes.index(index), axis.name.as_ref()));
+        let of_axes = self.axes().iter().enumerate().map(|(index, axis)| (axes.index(index), axis.name.as_ref()));
         let of_outputs = self.outputs.iter().enumerate().map(|(index, output)| (outputs.index(index), output.name()));
         let mut seen: Vec<&String> = Vec::new();
         for (at, name) in of_axes.chain(of_outputs).filter_map(|(at, name)| Some((at, name?))) {

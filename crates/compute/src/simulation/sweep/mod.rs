@@ -7,6 +7,7 @@ mod compute;
 mod plan;
 mod result;
 mod shared;
+mod uncertainty;
 
 use stickslip_wire::sweep::CheckedSweep;
 

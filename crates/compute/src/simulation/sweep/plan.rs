@@ -12,11 +12,13 @@ use stickslip_wire::{Peak, PlanarPlan, PlanarReply, PlanarState, PlanarStress, P
 
 /// What planning takes besides profiles: a thread of the solver, however small the sweep is.
 const PLANNING_COST: Nanoseconds = 100_000;
+/// Samples by which a sweep is checked and its cost estimated.
+const PROBES: usize = 8;
 
 impl Sweep {
     /// The cost of [`Sweep::plan`]: above all of the profile, which each corner may have its own of.
     pub fn planning_cost(checked: &CheckedSweep) -> Nanoseconds {
-        let corners = 1_u64 << checked.axes.len();
+        let corners = if checked.samples.is_some() { PROBES as u64 } else { 1_u64 << checked.axes.len() };
         PLANNING_COST.saturating_add(cost::of_profile_in(&checked.request.base.0).saturating_mul(corners))
     }
 
@@ -57,8 +59,11 @@ impl Sweep {
         Ok(sweep)
     }
 
-    /// The points where each axis is at one of its ends.
+    /// The points where each axis is at one of its ends, or the first of the samples.
     fn corners(&self) -> Vec<usize> {
+        if self.checked.samples.is_some() {
+            return (0..PROBES.min(self.checked.points)).collect();
+        }
         let mut corners = vec![0];
         for axis in &self.checked.axes {
             let with = |index: usize| corners.iter().map(move |corner| corner * axis.count() + index);
@@ -79,7 +84,7 @@ impl Sweep {
             }
         }
         if self.shared.is_none() {
-            self.shared = Shared::of(simulation, &self.checked.axes);
+            self.shared = Shared::of(simulation, &self.checked);
         }
         if self.shared.is_none() {
             cost = cost.saturating_add(preparation);
@@ -93,7 +98,9 @@ impl Sweep {
         let mut seen = Vec::new();
         for fault in found {
             let place = self.checked.place_of(&fault.pointer);
-            if (accepted == 0 || !place.starts_with("/base")) && !seen.contains(&place) {
+            // A sample out of range is a point without a result.
+            let every_point = accepted == 0 || place.starts_with("/axes");
+            if every_point && !seen.contains(&place) {
                 faults.add(JsonPath::Pointer(&place), fault.detail);
                 seen.push(place);
             }

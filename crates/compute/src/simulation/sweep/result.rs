@@ -5,9 +5,10 @@ use std::sync::Arc;
 use serde_json::Number;
 
 use stickslip_wire::PointFailure;
-use stickslip_wire::sweep::{CheckedSweep, indices};
+use stickslip_wire::sweep::CheckedSweep;
 
-use crate::formats::{Cells, Column, Table};
+use super::uncertainty::uncertainty;
+use crate::formats::{Blocks, Cells, Column, Format, Table};
 use crate::prelude::*;
 
 /// The outputs of consecutive points.
@@ -39,16 +40,28 @@ impl SweepResult {
         self.failures.truncate(limits::SWEEP_FAILURES);
     }
 
-    /// The table of the sweep: a row for each point, with the values of its axes and its outputs.
+    /// What is sent in a format, block by block: the table, or the document of uncertain inputs.
+    pub fn blocks(self, sweep: &CheckedSweep, format: Format) -> Blocks<'static> {
+        match &sweep.samples {
+            Some(samples) if format == Format::Columns => {
+                // Texts and numbers can always be written.
+                let document = serde_json::to_vec(&uncertainty(&self, sweep, samples)).unwrap_or_default();
+                Box::new(std::iter::once(Ok(document)))
+            }
+            _ => self.table(sweep).blocks(format),
+        }
+    }
+
+    /// The table of the sweep: a row for each point, with the values that change and its outputs.
     pub fn table(self, sweep: &CheckedSweep) -> Table<'static> {
         let SweepResult { values, failed, failures } = self;
-        let (axes, values) = (Arc::new(sweep.axes.clone()), Arc::new(values));
+        let (number, values) = (sweep.numbers(), Arc::new(values));
         let (request, count) = (&sweep.request, sweep.outputs.len());
-        let mut columns = Vec::with_capacity(axes.len() + count);
-        for (index, axis) in request.axes.iter().enumerate() {
-            let axes = Arc::clone(&axes);
-            let value = move |row| indices(&axes, row).nth(index).map(|(axis, index)| axis.number(index));
-            columns.push(Column::new(axis.column(), None, Cells::Numbers(Box::new(value))));
+        let mut columns = Vec::new();
+        for (index, name) in sweep.changing().into_iter().enumerate() {
+            let number = number.clone();
+            let value = move |row| number(row, index);
+            columns.push(Column::new(name, None, Cells::Numbers(Box::new(value))));
         }
         for (index, output) in request.outputs.iter().enumerate() {
             let values = Arc::clone(&values);

@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use stickslip_wire::Solver;
-use stickslip_wire::sweep::AxisValues;
+use stickslip_wire::sweep::{CheckedSweep, Pointer};
 
 use crate::prelude::*;
 use crate::simulation::run::simulate_on;
@@ -24,9 +24,11 @@ pub(super) fn placeholder() -> Value {
 
 impl Shared {
     /// What one of the points shares with all the others; `None` if not even the profile.
-    pub(super) fn of(point: Simulation, axes: &[AxisValues]) -> Option<Shared> {
+    pub(super) fn of(point: Simulation, sweep: &CheckedSweep) -> Option<Shared> {
         let changed = |member: &str| {
-            axes.iter().any(|axis| axis.pointer.segments().iter().map(String::as_str).take(2).eq(["contact", member]))
+            let begins =
+                |pointer: &Pointer| pointer.segments().iter().map(String::as_str).take(2).eq(["contact", member]);
+            sweep.pointers().any(begins)
         };
         // A bulk stress is one of the profile, and a line contact is quickly made.
         let bound = point.definition.bulk.is_some();

@@ -134,6 +134,12 @@ impl LineContact {
         }
     }
 
+    /// The radius, m, of a cylinder.
+    #[must_use]
+    pub fn cylinder_radius(&self) -> Option<f64> {
+        if let Specimen::Cylinder { radius } = self.specimen { Some(radius) } else { None }
+    }
+
     /// The length L, m.
     #[must_use]
     pub fn length(&self) -> f64 {

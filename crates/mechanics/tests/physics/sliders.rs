@@ -1,0 +1,201 @@
+//! Sliders in parallel against their closed form for a ball, and against the exact contact on random paths.
+
+use stickslip_mechanics::cycle::SteadyCycle;
+use stickslip_mechanics::profile::{FlatPunch, LineContact, LoadCurve};
+use stickslip_mechanics::sliders::{Sliders, Wanted, density};
+use stickslip_mechanics::{Contact, Elasticity, Error, Preload, Profile, Setup};
+
+use crate::support::{PLAIN, UNIT, displace, shapes};
+
+fn of(contact: &Contact, wanted: Wanted) -> Sliders {
+    Sliders::of(contact, wanted, &|| true).unwrap()
+}
+
+/// All shapes, a load curve and a line contact, each under an ordinary load.
+fn contacts() -> Vec<Contact> {
+    let elasticity = Elasticity::effective(1e11, 8e10).unwrap();
+    let depths: Vec<f64> = (0..=30).map(|index| f64::from(index) * 1e-7).collect();
+    let loads: Vec<f64> = depths.iter().map(|depth| 1e9 * depth.powf(1.4)).collect();
+    let curve = Profile::LoadCurve(LoadCurve::new(&depths, &loads, &elasticity).unwrap());
+    let line = Profile::Line(LineContact::cylinder(0.05, 0.01, None).unwrap());
+    let all = shapes().into_iter().chain([(curve, 2e-6), (line, 5e-6)]);
+    let contact = |(profile, depth)| {
+        Contact::new(Setup { profile, elasticity, friction: 0.3, preload: Preload::Indentation(depth) }).unwrap()
+    };
+    all.map(contact).collect()
+}
+
+/// The force of sliders that have been moved along a path, each followed on its own.
+fn followed(sliders: &Sliders, path: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut spring: Vec<f64> = vec![0.0; sliders.displacement.len()];
+    let mut before = 0.0;
+    path.map(|displacement| {
+        let step = displacement - before;
+        before = displacement;
+        let carried = spring.iter_mut().zip(&sliders.displacement).zip(&sliders.stiffness);
+        carried
+            .map(|((held, limit), stiffness)| {
+                *held = (*held + step).clamp(-limit, *limit);
+                stiffness * *held
+            })
+            .sum()
+    })
+    .collect()
+}
+
+/// The largest distance of first loading, by many displacements between 0 and that of gross slip, over mu F_N.
+fn largest_of_first_loading(contact: &Contact, sliders: &Sliders, points: usize) -> f64 {
+    let summary = contact.summary();
+    let at = |index: usize| summary.gross_slip_displacement * index as f64 / points as f64;
+    let error = |index| {
+        let displacement = at(index);
+        let mut exact = contact.virgin();
+        exact.apply(&displace(displacement)).unwrap();
+        let found = followed(sliders, std::iter::once(displacement))[0];
+        (found - exact.force()).abs() / summary.gross_slip_force
+    };
+    (1..=points).map(error).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_ball_has_the_sliders_of_its_closed_form_with_equal_chords() {
+    let contact = UNIT.contact();
+    let sliders = of(&contact, Wanted::Count(10));
+    // F/(mu F_N) = 1 - (1 - u)^(3/2); the knots by the density alone have 1.666381e-3, and equal chords less.
+    let force = |u: f64| 1.0 - (1.0 - u).powf(1.5);
+    let knots: Vec<f64> = sliders.displacement.iter().map(|knot| knot / UNIT.full_slip()).collect();
+    let chord = |a: f64, b: f64| {
+        let slope = (force(b) - force(a)) / (b - a);
+        // F' = 3/2 (1 - u)^(1/2) is the slope of the chord there.
+        let at = 1.0 - (slope / 1.5).powi(2);
+        force(at) - force(a) - slope * (at - a)
+    };
+    let mut from = 0.0;
+    for &to in &knots {
+        assert!((chord(from, to) / sliders.force_error - 1.0).abs() < 1e-9, "{to}");
+        from = to;
+    }
+    assert_eq!((knots.len(), knots[9]), (10, 1.0));
+    assert!(sliders.force_error < 1.666_381e-3 && sliders.force_error > 1.6e-3, "{:e}", sliders.force_error);
+    let total: f64 = sliders.slip_force.iter().sum();
+    assert!((total / UNIT.force_limit(UNIT.radius) - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn the_stated_error_is_the_largest_of_first_loading_on_every_shape() {
+    for contact in contacts() {
+        let name = format!("{:.60?}", contact.profile());
+        for count in [1, 4, 11] {
+            let sliders = of(&contact, Wanted::Count(count));
+            let found = largest_of_first_loading(&contact, &sliders, 2_000);
+            // Samples miss the largest by the square of their distance.
+            let room = 1e-9 + 1e-3 * sliders.force_error;
+            assert!(found <= sliders.force_error + 1e-9, "{name}, {count}: {found:e} of {:e}", sliders.force_error);
+            assert!(found >= sliders.force_error - room, "{name}, {count}: {found:e} of {:e}", sliders.force_error);
+        }
+        let wanted = 3e-3;
+        let few = of(&contact, Wanted::ForceError(wanted));
+        assert!(few.force_error <= wanted, "{name}");
+        let count = few.displacement.len();
+        assert!(count == 1 || of(&contact, Wanted::Count(count - 1)).force_error > wanted, "{name}: fewer would do");
+    }
+}
+
+#[test]
+fn a_path_of_a_thousand_turns_stays_within_its_error_and_one_reversal_within_twice_the_chord() {
+    let mut random = fastrand_like(7);
+    for contact in contacts() {
+        let (summary, sliders) = (contact.summary(), of(&contact, Wanted::Count(10)));
+        let gross_slip = summary.gross_slip_displacement;
+        let turns: Vec<f64> = (0..1000).map(|_| gross_slip * (2.4 * random() - 1.2)).collect();
+        let mut exact = contact.virgin();
+        let forces = followed(&sliders, turns.iter().copied());
+        for (turn, force) in turns.iter().zip(forces) {
+            exact.apply(&displace(*turn)).unwrap();
+            let error = (force - exact.force()).abs() / summary.gross_slip_force;
+            assert!(error <= sliders.path_error() + 1e-9, "{error:e}");
+        }
+        for part in [0.2, 0.7, 1.1] {
+            let back: Vec<f64> = (1..=50).map(|step| gross_slip * part * (1.0 - f64::from(step) / 25.0)).collect();
+            let path: Vec<f64> = std::iter::once(gross_slip * part).chain(back).collect();
+            let mut exact = contact.virgin();
+            for (displacement, force) in path.iter().zip(followed(&sliders, path.iter().copied())) {
+                exact.apply(&displace(*displacement)).unwrap();
+                let error = (force - exact.force()).abs() / summary.gross_slip_force;
+                assert!(error <= 2.0 * sliders.force_error + 1e-9, "{part}: {error:e}");
+            }
+        }
+    }
+}
+
+/// Uniform numbers from 0 to 1 by a linear congruence, the same in every run.
+fn fastrand_like(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[test]
+fn geometric_knots_keep_the_work_of_small_cycles_and_equal_chords_lose_it() {
+    let contact = PLAIN.contact();
+    let gross_slip = PLAIN.full_slip();
+    let wanted = Wanted::WorkError { error: 0.1, smallest_amplitude: 0.005 * gross_slip };
+    let (geometric, equal) = (of(&contact, wanted), of(&contact, Wanted::Count(20)));
+    assert!(geometric.displacement.len() <= 24, "{}", geometric.displacement.len());
+    for index in 0..=200 {
+        let amplitude = gross_slip * 0.005_f64.powf(f64::from(index) / 200.0);
+        // Mindlin and Deresiewicz: D = 8 int F dU - 4 U F with F = 1 - (1 - u)^(3/2), which loses digits when small.
+        let u = amplitude / gross_slip;
+        let closed = 8.0 * (u - (1.0 - (1.0 - u).powf(2.5)) / 2.5) - 4.0 * u * (1.0 - (1.0 - u).powf(1.5));
+        let exact = SteadyCycle::of(&contact, amplitude).dissipated_energy();
+        let unit = PLAIN.force_limit(PLAIN.radius) * gross_slip;
+        assert!((exact / unit - closed).abs() < 1e-14, "{u}");
+        let ratio = geometric.work(amplitude) / exact;
+        assert!((ratio / geometric.work_ratio(&contact, amplitude) - 1.0).abs() < 1e-12);
+        assert!((ratio - 1.0).abs() <= 0.101, "{amplitude:e}: {ratio}");
+    }
+    assert_eq!(equal.work(0.05 * gross_slip), 0.0);
+    // Knots by the density of a ball keep 0.9472319 of the work at this amplitude, and equal chords nearly as much.
+    let ten = of(&contact, Wanted::Count(10)).work_ratio(&contact, 0.3 * gross_slip);
+    assert!((ten - 0.947).abs() < 0.01, "{ten}");
+}
+
+#[test]
+fn a_punch_is_one_slider_and_what_cannot_slide_is_refused() {
+    let punch = Setup { profile: Profile::FlatPunch(FlatPunch::new(1e-4).unwrap()), ..PLAIN.setup() };
+    let contact = Contact::new(Setup { preload: Preload::NormalForce(10.0), ..punch }).unwrap();
+    let sliders = of(&contact, Wanted::Count(7));
+    assert_eq!((sliders.displacement.len(), sliders.force_error), (1, 0.0));
+    let refused =
+        |contact: &Contact, wanted| matches!(Sliders::of(contact, wanted, &|| true), Err(Error::OutOfRange { .. }));
+    let smooth = Contact::new(Setup { friction: 0.0, ..PLAIN.setup() }).unwrap();
+    let apart = Contact::new(PLAIN.loaded(Preload::NormalForce(0.0))).unwrap();
+    assert!(refused(&smooth, Wanted::Count(5)) && refused(&apart, Wanted::Count(5)));
+    let ball = PLAIN.contact();
+    for wanted in [
+        Wanted::Count(0),
+        Wanted::Count(1001),
+        Wanted::ForceError(1e-7),
+        Wanted::ForceError(f64::NAN),
+        Wanted::WorkError { error: 0.1, smallest_amplitude: PLAIN.full_slip() },
+        Wanted::WorkError { error: 0.1, smallest_amplitude: f64::NAN },
+        Wanted::WorkError { error: 0.1, smallest_amplitude: 0.0 },
+    ] {
+        assert!(refused(&ball, wanted), "{wanted:?}");
+    }
+    assert_eq!(Sliders::of(&ball, Wanted::Count(9), &|| false), Err(Error::Interrupted));
+}
+
+#[test]
+fn the_density_is_that_of_a_ball() {
+    // -F'' = (3/4) mu F_N/u_max^2 (1 - u)^(-1/2), whose mean between two knots is a difference of F'.
+    let contact = UNIT.contact();
+    let knots: Vec<f64> = (0..=8).map(|index| f64::from(index) / 8.0).collect();
+    let slope = |u: f64| 1.5 * UNIT.force_limit(1.0) * (1.0 - u).sqrt();
+    for (pair, found) in knots.windows(2).zip(density(&contact, &knots)) {
+        let expected = (slope(pair[0]) - slope(pair[1])) * 8.0;
+        assert!((found / expected - 1.0).abs() < 1e-13);
+    }
+}
