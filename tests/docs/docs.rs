@@ -1,6 +1,7 @@
 //! The pages of `docs/`: their commands run as printed, and what they list is complete.
 
 use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use stickslip::api::need;
@@ -140,6 +141,49 @@ fn every_test_that_verification_names_exists() {
         }
     }
     assert!(named > 250, "{named} tests are named");
+}
+
+/// A filter that matches nothing runs no test, and Cargo calls that a success.
+#[test]
+fn every_filter_of_a_test_command_finds_a_test() {
+    let readme = std::fs::read_to_string(file("README.md")).unwrap();
+    let texts = pages().chain([("README.md".to_owned(), readme)]);
+    let mut seen = 0;
+    for (name, text) in texts {
+        for command in text.split(['`', '\n']).filter(|line| line.contains("cargo test")) {
+            let words: Vec<&str> = command.split_whitespace().skip_while(|word| *word != "test").skip(1).collect();
+            let after = |flag: &str| words.iter().position(|word| *word == flag).map(|index| words[index + 1]);
+            let folder = match after("-p") {
+                Some(member) => file("crates").join(member.trim_start_matches("stickslip-")),
+                None => file("."),
+            };
+            let Some(target) = after("--test") else { continue };
+            let tests = [folder.join("tests").join(target), folder.join(format!("tests/{target}.rs"))];
+            let tests = tests.into_iter().find(|path| path.exists()).unwrap_or_else(|| panic!("{name}: {command}"));
+            let sources: String = rust_files(&tests).map(|path| std::fs::read_to_string(path).unwrap()).collect();
+            let values = ["-p", "--test"].map(after);
+            let filters = words.iter().filter(|word| !word.starts_with('-') && !values.contains(&Some(word)));
+            for part in filters.flat_map(|filter| filter.split("::")).filter(|part| !part.is_empty()) {
+                let names = sources.lines().filter_map(|line| {
+                    let line = line.trim_start();
+                    ["fn ", "async fn ", "mod ", "pub mod "].iter().find_map(|keyword| line.strip_prefix(keyword))
+                });
+                let found = names.map(|rest| rest.split(['(', ';', ' ', '<']).next().unwrap()).any(|own| own.contains(part));
+                assert!(found, "{name}: `{command}` runs no test: `{part}` is no part of a name in {}", tests.display());
+                seen += 1;
+            }
+        }
+    }
+    assert!(seen > 15, "{seen} filters");
+}
+
+fn rust_files(path: &Path) -> Box<dyn Iterator<Item = PathBuf>> {
+    if path.is_file() {
+        return Box::new(std::iter::once(path.to_owned()));
+    }
+    let entries = std::fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path());
+    let of_interest = |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|end| end == "rs");
+    Box::new(entries.filter(of_interest).flat_map(|path| rust_files(&path)))
 }
 
 #[test]

@@ -198,6 +198,25 @@ pub struct PlanarReply: Default omits Option {
 }
 }
 
+impl From<rings::PlanarState> for PlanarState {
+    /// Without the conductances, which the contact knows.
+    fn from(state: rings::PlanarState) -> PlanarState {
+        PlanarState {
+            displacement: state.displacement,
+            force: state.force,
+            indentation: state.indentation,
+            normal_force: state.normal_force,
+            contact_radius: state.contact_radius,
+            stick_radius: state.stick_radius,
+            regime: state.regime.into(),
+            dissipated_energy: state.dissipated_energy,
+            elastic_energy: state.elastic_energy,
+            electrical_conductance: None,
+            thermal_conductance: None,
+        }
+    }
+}
+
 /// The result of a simulation, along a line or in the plane: the latter if the path has pairs or is an ellipse, or
 /// rings are asked for.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -7,7 +7,7 @@ use super::move_series::{self, ITEM_BYTES, MoveSeries, MovesQuery, curve};
 use super::prelude::*;
 use crate::admission::Reservation;
 use crate::api::query_parameters::flag;
-use stickslip_compute::computations::state_columns;
+use stickslip_compute::computations::{columns_of_some_states, state_columns};
 use stickslip_compute::formats::{Cells, Column, Table};
 
 parameters! {

@@ -90,17 +90,9 @@ fn turned(stress: Stress, direction: [f64; 2]) -> PlanarStress {
 fn shown_state(solution: &Solution, state: &rings::PlanarState) -> PlanarState {
     let conductance = solution.pressed().conductance(state.indentation);
     PlanarState {
-        displacement: state.displacement,
-        force: state.force,
-        indentation: state.indentation,
-        normal_force: state.normal_force,
-        contact_radius: state.contact_radius,
-        stick_radius: state.stick_radius,
-        regime: state.regime.into(),
-        dissipated_energy: state.dissipated_energy,
-        elastic_energy: state.elastic_energy,
         electrical_conductance: conductance.electrical,
         thermal_conductance: conductance.thermal,
+        ..(*state).into()
     }
 }
 
