@@ -168,8 +168,13 @@ fn every_filter_of_a_test_command_finds_a_test() {
                     let line = line.trim_start();
                     ["fn ", "async fn ", "mod ", "pub mod "].iter().find_map(|keyword| line.strip_prefix(keyword))
                 });
-                let found = names.map(|rest| rest.split(['(', ';', ' ', '<']).next().unwrap()).any(|own| own.contains(part));
-                assert!(found, "{name}: `{command}` runs no test: `{part}` is no part of a name in {}", tests.display());
+                let found =
+                    names.map(|rest| rest.split(['(', ';', ' ', '<']).next().unwrap()).any(|own| own.contains(part));
+                assert!(
+                    found,
+                    "{name}: `{command}` runs no test: `{part}` is no part of a name in {}",
+                    tests.display()
+                );
                 seen += 1;
             }
         }

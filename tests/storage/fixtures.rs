@@ -62,6 +62,8 @@ pub fn record(sequence: u64) -> Record {
             dissipated_energy: number.cos(),
             elastic_energy: number.exp_m1(),
             memory_depth: sequence as usize,
+            electrical_conductance: None,
+            thermal_conductance: None,
         },
         measured: sequence.is_multiple_of(3).then(|| Measured {
             force: -number / 7.0,

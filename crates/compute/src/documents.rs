@@ -6,7 +6,7 @@ use std::any::Any;
 use stickslip_wire::{
     AccuracyRequest, CreateRequest, CycleRequest, DefinedProfile, FitRequest, ForkRequest, FrettingRequest,
     MoveRequest, ObservationsRequest, PathRequest, ProfileFitRequest, ProtocolRequest, RelaxRequest, RenameRequest,
-    SubsurfaceRequest, SweepRequest, WearRequest,
+    RollingRequest, SlidersRequest, SubsurfaceRequest, SweepRequest, WearRequest,
 };
 
 use crate::prelude::*;
@@ -40,7 +40,7 @@ macro_rules! documents {
 documents! {
     AccuracyRequest, CreateRequest, CycleRequest, FitRequest, ForkRequest, FrettingRequest, MoveRequest,
     ObservationsRequest, PathRequest, ProfileFitRequest, ProtocolRequest, RelaxRequest, RenameRequest,
-    SimulateRequest, SubsurfaceRequest, SweepRequest, WearRequest
+    RollingRequest, SimulateRequest, SlidersRequest, SubsurfaceRequest, SweepRequest, WearRequest
 }
 
 /// A parsed document without its type.

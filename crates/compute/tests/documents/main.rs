@@ -2,6 +2,7 @@
 //! replies the same is tested in `tests/api/computations.rs`, that it refuses the same in `tests/api/faults.rs`.
 
 mod accuracy;
+mod conductance;
 mod cycle;
 mod cycles_path;
 mod defaults;
@@ -19,9 +20,11 @@ mod profiles;
 mod protocols;
 mod shear_strength;
 mod simulate;
+mod sliders;
 mod subsurface;
 mod sweeps;
 mod tables;
+mod uncertain_inputs;
 mod warnings;
 mod wear;
 

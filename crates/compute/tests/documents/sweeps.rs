@@ -14,7 +14,7 @@ pub fn swept(text: &str) -> Reply {
     let plan = read::<SweepRequest>(text.as_bytes()).and_then(|sweep| Sweep::plan(sweep, &PrepareAnew));
     let plan = plan.map_err(|rejection| refusal(Refusal::from(rejection)))?;
     let result = plan.compute(0..plan.points(), 1, &Flag::default()).unwrap();
-    let blocks = result.table(plan.checked()).blocks(Format::Columns);
+    let blocks = result.blocks(plan.checked(), Format::Columns);
     let text: Vec<u8> = blocks.flat_map(Result::unwrap).collect();
     Ok(serde_json::from_slice(&text).unwrap())
 }
