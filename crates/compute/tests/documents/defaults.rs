@@ -6,12 +6,13 @@ use std::collections::BTreeSet;
 use serde_json::{Value, json};
 use stickslip_compute::computations::entries;
 
-use crate::json::{ball, changed, of, timeless, with};
+use crate::json::{ball, changed, cylinder, of, timeless, with};
 use crate::{good, post};
 
 /// Members whose default is no value that could be written out, or that no computation has.
-const OTHERS: [(&str, &str); 17] = [
+const OTHERS: [(&str, &str); 18] = [
     ("Axis.name", "the pointer, in a table"),
+    ("Input.name", "the pointer, which is no name"),
     ("CyclicPath.normal", "a constant load"),
     ("EqualPeaks.cutoff_radius", "zero, which its range excludes"),
     ("FatemiSocie.youngs_modulus", "the same member as `StrainBased.youngs_modulus`"),
@@ -95,6 +96,12 @@ fn others() -> Vec<Case> {
         body
     };
     let ruiz = rated(json!({"criteria": {"findley": {"k": 0.3}}}));
+    let rolling = of(&cylinder(), &json!({"ratio": 0.5}));
+    let uncertain = |more: Value| {
+        let inputs = json!([{"pointer": "/contact/friction", "normal": {"standard_uncertainty": 0.01}}]);
+        let base = of(&ball(), &json!({"path": {"displacement": [1e-7]}}));
+        changed(json!({"base": base, "inputs": inputs, "outputs": ["/steps/0/force"]}), &more)
+    };
     let (scan, loops) = (example("profile"), example("fit"));
     let mut metres = scan.clone();
     metres.as_object_mut().unwrap().remove("units");
@@ -116,6 +123,10 @@ fn others() -> Vec<Case> {
         ("SubsurfaceRequest.fields", "/simulate", below.clone(), "/subsurface/fields", json!(["tensor"])),
         ("SubsurfaceRequest.poisson_ratio", "/simulate", below, "/subsurface/poisson_ratio", json!(0.3)),
         ("WearRequest.points", "/wear", wear, "/points", json!(200)),
+        ("RollingRequest.points", "/rolling", rolling, "/points", json!(200)),
+        ("SweepRequest.samples", "/sweep", uncertain(json!({"seed": 0})), "/samples", json!(1024)),
+        ("SweepRequest.seed", "/sweep", uncertain(json!({"samples": 16})), "/seed", json!(0)),
+        ("Normal.mean", "/sweep", uncertain(json!({"samples": 16})), "/inputs/0/normal/mean", json!(0.3)),
         ("FrettingRequest.tolerance", "/fretting", ruiz.clone(), "/tolerance", json!(1e-4)),
         ("FrettingRequest.poisson_ratio", "/fretting", ruiz, "/poisson_ratio", json!(0.3)),
         ("StrainBased.youngs_modulus", "/fretting", swt(), "/criteria/swt/youngs_modulus", json!(2.1e11)),
