@@ -177,7 +177,7 @@ pub struct Warning: Eq {
     /// `quantised`, `not_converged`, `turns_as_sampled`, `tolerance_not_met`, `stress_error`, `interaction_neglected`,
     /// `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`, `bulk_work_neglected`, `no_worn_profile`,
     /// `unbounded_stress`, `no_positive_value`, `life_scatter`, `grid_outside_contact`, `grid_rim`,
-    /// `grid_misses_largest`, `worn_profile_error`.
+    /// `grid_misses_largest`, `worn_profile_error`, `points_failed`.
     pub code: String,
     /// An explanation for people.
     pub message: String,

@@ -48,7 +48,7 @@ fn every_contact_conducts_by_its_stiffness() {
                 "profile": profile, "material": conducting(), "preload": {"indentation": 1e-6}
             }),
         );
-        let moves: Vec<Value> = [1e-6, 1.000_1e-6, 0.999_9e-6].iter().map(|d| json!({"indentation": d})).collect();
+        let moves: Vec<Value> = [1.1e-6, 1.100_1e-6, 1.099_9e-6].iter().map(|d| json!({"indentation": d})).collect();
         let reply = good(post("/simulate", &of(&contact, &json!({"path": {"moves": moves}}))));
         let load = |index: usize| number(&reply["steps"][index]["normal_force"]);
         let stiffness = (load(1) - load(2)) / 2e-10;

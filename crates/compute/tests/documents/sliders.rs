@@ -14,13 +14,13 @@ fn numbers(value: &Value) -> Vec<f64> {
 fn sliders_carry_the_limit_of_friction_and_state_their_work() {
     let reply = good(post("/sliders", &of(&ball(), &json!({"force_error": 0.01}))));
     let [knots, stiffness, force] = ["displacement", "stiffness", "slip_force"].map(|name| numbers(&reply[name]));
-    assert!(number(&reply["force_error"]) <= 0.01 && knots.len() == 4);
+    assert!(number(&reply["force_error"]) <= 0.01 && knots.len() == 5);
     assert!((force.iter().sum::<f64>() - 3.0).abs() < 1e-13);
     for ((knot, stiffness), force) in knots.iter().zip(&stiffness).zip(&force) {
         assert!((stiffness * knot / force - 1.0).abs() < 1e-14);
     }
     let gross_slip = number(&reply["contact"]["gross_slip_displacement"]);
-    assert!((knots[3] / gross_slip - 1.0).abs() < 1e-14);
+    assert!((knots[4] / gross_slip - 1.0).abs() < 1e-14);
     // The work of a cycle by the polygon, over that of `/cycle`.
     let (amplitudes, ratios) = (numbers(&reply["work"]["amplitude"]), numbers(&reply["work"]["ratio"]));
     let cycles = good(post("/cycle", &of(&ball(), &json!({"drive": {"displacement": amplitudes}}))));

@@ -27,18 +27,18 @@ fn a_ball_has_the_stiffness_that_its_inputs_allow() {
         normal("/contact/profile/radius", 2e-4),
         normal("/contact/material/bodies/0/youngs_modulus", 6.3e9)
     ]);
-    let reply = good(post("/sweep", &sweep(&base, inputs, json!(["/steps/0/force"]), 10_000)));
-    assert_eq!((&reply["points"], &reply["failed"]), (&json!(50_000), &json!(0)));
+    let reply = good(post("/sweep", &sweep(&base, inputs, json!(["/steps/0/force"]), 1_000)));
+    assert_eq!((&reply["points"], &reply["failed"]), (&json!(5_000), &json!(0)));
     let output = &reply["outputs"][0];
     let mean = number(&output["mean"]);
     let relative = number(&output["standard_uncertainty"]) / mean;
     let error = number(&output["standard_uncertainty_error"]) / mean;
     // The second order of the distributions adds some 1e-5.
-    assert!((relative - 0.021_343_747).abs() < 3.0 * error + 2e-5 && error < 2e-4, "{relative} +- {error}");
+    assert!((relative - 0.021_343_747).abs() < 3.0 * error + 2e-5 && error < 6e-4, "{relative} +- {error}");
     let [low, high] = [0, 1].map(|end| number(&output["interval"][end]) / mean);
-    assert!((low - (1.0 - 1.96 * 0.021_34)).abs() < 1.5e-3 && (high - (1.0 + 1.96 * 0.021_34)).abs() < 1.5e-3);
+    assert!((low - (1.0 - 1.96 * 0.021_34)).abs() < 4e-3 && (high - (1.0 + 1.96 * 0.021_34)).abs() < 4e-3);
     let share = &output["shares"]["/contact/material/bodies/0/youngs_modulus"];
-    near(&share["value"], &share["standard_error"], 4.0 / 4.555_555_6, 0.02);
+    near(&share["value"], &share["standard_error"], 4.0 / 4.555_555_6, 0.03);
 }
 
 #[test]
@@ -52,11 +52,11 @@ fn shares_are_those_of_a_sum_and_of_a_product() {
         {"pointer": "/contact/preload/indentation", "name": "first", "uniform": uniform(1e-6, 3e-6)},
         {"pointer": "/path/moves/0/indentation", "name": "second", "uniform": uniform(0.5e-6, 1.5e-6)}
     ]);
-    let sum = good(post("/sweep", &sweep(&base, inputs, json!(["/steps/0/indentation"]), 4_000)));
+    let sum = good(post("/sweep", &sweep(&base, inputs, json!(["/steps/0/indentation"]), 1_000)));
     let output = &sum["outputs"][0];
-    near(&output["mean"], &output["mean_error"], 3e-6, 1e-8);
+    near(&output["mean"], &output["mean_error"], 3e-6, 3e-8);
     for (name, share) in [("first", 0.8), ("second", 0.2)] {
-        near(&output["shares"][name]["value"], &output["shares"][name]["standard_error"], share, 0.03);
+        near(&output["shares"][name]["value"], &output["shares"][name]["standard_error"], share, 0.06);
     }
     // mu F_N, with 20 % of each: the variances of first order are equal, and a part belongs to both.
     let base = json!({"contact": ball(), "path": {"displacement": [0.0]}});
@@ -64,12 +64,12 @@ fn shares_are_those_of_a_sum_and_of_a_product() {
         {"pointer": "/contact/friction", "normal": {"mean": 0.5, "standard_uncertainty": 0.1}},
         {"pointer": "/contact/preload/normal_force", "normal": {"standard_uncertainty": 2.0}}
     ]);
-    let product = good(post("/sweep", &sweep(&base, inputs, json!(["/contact/gross_slip_force"]), 4_000)));
+    let product = good(post("/sweep", &sweep(&base, inputs, json!(["/contact/gross_slip_force"]), 1_000)));
     let output = &product["outputs"][0];
     let variance = 2.0 * 0.04 + 0.04 * 0.04;
-    near(&output["standard_uncertainty"], &output["standard_uncertainty_error"], 5.0 * f64::sqrt(variance), 0.05);
+    near(&output["standard_uncertainty"], &output["standard_uncertainty_error"], 5.0 * f64::sqrt(variance), 0.1);
     for name in ["/contact/friction", "/contact/preload/normal_force"] {
-        near(&output["shares"][name]["value"], &output["shares"][name]["standard_error"], 0.04 / variance, 0.03);
+        near(&output["shares"][name]["value"], &output["shares"][name]["standard_error"], 0.04 / variance, 0.06);
     }
 }
 
