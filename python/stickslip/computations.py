@@ -620,6 +620,64 @@ class Computations(ABC):
         }
         return self._answer(results.ProtocolReply, "/protocols", given, parts)
 
+    def rolling(
+        self,
+        contact: ContactLike,
+        *,
+        creep: Quantity | None = None,
+        points: int | None = None,
+        ratio: Quantity | None = None,
+    ) -> results.RollingReply:
+        """Compute the creep of a rolling cylinder.
+
+        A cylinder that rolls steadily towards +x under its load carries a tangential force by a stick zone at its
+        leading edge and slip behind it. Returns creep, stick zone and tractions for a force over μ F_N or a creep.
+        Nothing is stored.
+
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
+
+        Parameters
+        ----------
+        contact : ContactLike
+            The contact; its profile is a `cylinder`.
+        creep : Quantity
+            Creep, a pure number below μ a/R in magnitude; positive with a positive force.
+        points : int
+            Number of places of the curves, evenly spaced from −a to a; 200 if left out.
+        ratio : Quantity
+            Tangential force over μ F_N, a pure number between −1 and 1; positive along +x.
+
+        Returns
+        -------
+        RollingReply
+            Creep, stick zone and tractions of a cylinder that rolls steadily.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.rolling(
+        ...     contact=ss.Definition(ss.Cylinder(length=0.01, radius=0.025), [ss.Body(2.1e+11, 0.3),
+        ...         ss.Body(2.1e+11, 0.3)], 0.3, normal_force=1000.0),
+        ...     points=50,
+        ...     ratio=0.5,
+        ... )
+        """
+        given: Document = {
+            "contact": contact,
+            "creep": creep,
+            "points": points,
+            "ratio": ratio,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer(results.RollingReply, "/rolling", given, parts)
+
     @overload
     def simulate(
         self,
@@ -794,40 +852,42 @@ class Computations(ABC):
         }
         return self._answer(results.SimulateReply, "/simulate", given, parts)
 
-    def sweep(
+    def sliders(
         self,
-        base: Mapping[str, Any],
-        axes: Mapping[str, Quantities] | Sequence[types.Axis],
-        outputs: str | Mapping[str, str] | Sequence[types.Output],
+        contact: ContactLike,
         *,
-        job: bool | None = None,
-    ) -> results.SweepReply:
-        """Run a sweep.
+        count: int | None = None,
+        force_error: Quantity | None = None,
+        smallest_amplitude: Quantity | None = None,
+        work_error: Quantity | None = None,
+    ) -> results.SlidersReply:
+        """Find sliders that move like a contact.
 
-        Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the
-        outputs. A point without a result is a row of `null` and is listed among the failures. A small sweep is answered
-        at once. A large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-
-        stream`, its events. A retry with the same `Idempotency-Key` gets the numbers of the first attempt, or its job.
-        With a key, a table of more than 65536 numbers is the result of a job.
+        Returns springs with friction caps in parallel (Jenkins, Iwan) that have the tangential force of a contact at
+        constant load, for a code that knows no more: with chords of equal errors for a number of sliders or an error of
+        the force, or with geometric knots for an error of the work of small cycles. Nothing is stored.
 
-        `axes` may be values by their pointers, `outputs` pointers by the names of their columns.
+        The contact is taken at the preload of its definition, as if it was never moved: the history and the present
+        load of a `Contact` that has been moved do not matter.
 
         Parameters
         ----------
-        base : Mapping[str, Any]
-            The body of `POST /simulate` that each point is made from. A number that an axis sets may be left out.
-        axes : Mapping[str, Quantities] | Sequence[Axis]
-            The numbers that change.
-        outputs : str | Mapping[str, str] | Sequence[Output]
-            JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
-            point lacks the number, such as the third of two peaks, the column has `null`.
-        job : bool
-            Run the sweep as a job even if it is small.
+        contact : ContactLike
+            The contact, whose normal load stays as it is.
+        count : int
+            Number of sliders. Fewer are returned where the first loading is straight, as for a flat punch.
+        force_error : Quantity
+            Largest error of a first loading over μ F_N, a pure number: the fewest sliders that keep it.
+        smallest_amplitude : Quantity
+            The smallest amplitude for `work_error`, m; below the displacement of gross slip.
+        work_error : Quantity
+            Largest relative error of the work of a steady cycle from `smallest_amplitude` on, a pure number: the fewest
+            sliders with geometric knots that keep it.
 
         Returns
         -------
-        SweepReply
-            The table of a sweep: one row for each point.
+        SlidersReply
+            Sliders in parallel: each is a spring with a friction cap, and all are moved by the same displacement.
 
         Raises
         ------
@@ -837,24 +897,22 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> reply = ss.sweep(
-        ...     base={'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...         210000000000.0}, 'rigid']}, 'preload': {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type':
-        ...         'sphere'}}, 'path': {'falling_amplitude': {'reversals': 20}}, 'residual': True, 'steps': 'last'},
-        ...     axes=[{'linear': {'count': 100, 'from': 1, 'to': 100}, 'pointer':
-        ...         '/path/falling_amplitude/reversals'}],
-        ...     outputs=['/residual/max'],
+        >>> reply = ss.sliders(
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...         normal_force=10.0),
+        ...     force_error=0.01,
         ... )
         """
         given: Document = {
-            "axes": axes,
-            "base": base,
-            "job": job,
-            "outputs": outputs,
+            "contact": contact,
+            "count": count,
+            "force_error": force_error,
+            "smallest_amplitude": smallest_amplitude,
+            "work_error": work_error,
         }
         parts: dict[str, Document] = {
         }
-        return self._answer(results.SweepReply, "/sweep", given, parts)
+        return self._answer(results.SlidersReply, "/sliders", given, parts)
 
     def wear(
         self,
@@ -1142,6 +1200,25 @@ class AsyncComputations(ABC):
         }
         return await self._answer(results.ProtocolReply, "/protocols", given, parts)
 
+    async def rolling(
+        self,
+        contact: ContactLike,
+        *,
+        creep: Quantity | None = None,
+        points: int | None = None,
+        ratio: Quantity | None = None,
+    ) -> results.RollingReply:
+        """`rolling`, awaited."""
+        given: Document = {
+            "contact": contact,
+            "creep": creep,
+            "points": points,
+            "ratio": ratio,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer(results.RollingReply, "/rolling", given, parts)
+
     @overload
     async def simulate(
         self,
@@ -1248,24 +1325,26 @@ class AsyncComputations(ABC):
         }
         return await self._answer(results.SimulateReply, "/simulate", given, parts)
 
-    async def sweep(
+    async def sliders(
         self,
-        base: Mapping[str, Any],
-        axes: Mapping[str, Quantities] | Sequence[types.Axis],
-        outputs: str | Mapping[str, str] | Sequence[types.Output],
+        contact: ContactLike,
         *,
-        job: bool | None = None,
-    ) -> results.SweepReply:
-        """`sweep`, awaited."""
+        count: int | None = None,
+        force_error: Quantity | None = None,
+        smallest_amplitude: Quantity | None = None,
+        work_error: Quantity | None = None,
+    ) -> results.SlidersReply:
+        """`sliders`, awaited."""
         given: Document = {
-            "axes": axes,
-            "base": base,
-            "job": job,
-            "outputs": outputs,
+            "contact": contact,
+            "count": count,
+            "force_error": force_error,
+            "smallest_amplitude": smallest_amplitude,
+            "work_error": work_error,
         }
         parts: dict[str, Document] = {
         }
-        return await self._answer(results.SweepReply, "/sweep", given, parts)
+        return await self._answer(results.SlidersReply, "/sliders", given, parts)
 
     async def wear(
         self,

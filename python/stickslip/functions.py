@@ -11,8 +11,9 @@ fit_loop = _local.fit_loop
 fit_profile = _local.fit_profile
 fretting = _local.fretting
 protocols = _local.protocols
+rolling = _local.rolling
 simulate = _local.simulate
-sweep = _local.sweep
+sliders = _local.sliders
 wear = _local.wear
 
 __all__ = [
@@ -24,7 +25,8 @@ __all__ = [
     "fit_profile",
     "fretting",
     "protocols",
+    "rolling",
     "simulate",
-    "sweep",
+    "sliders",
     "wear",
 ]

@@ -305,6 +305,24 @@ class FrettingMap(TypedDict):
     """The loads."""
 
 
+class Input(TypedDict, total=False):
+    """A number of the base that is known with an uncertainty.
+
+    `pointer` or `pointers`, and one of `normal` and `uniform`.
+    """
+
+    name: str
+    """The name of the input; if left out, the first pointer."""
+    normal: Normal | Mapping[str, Any]
+    """A normal distribution."""
+    pointer: str
+    """JSON pointer to the number in the base."""
+    pointers: Sequence[str]
+    """JSON pointers to the places that have this number, such as the modulus of two bodies of one steel."""
+    uniform: Uniform | Mapping[str, Any]
+    """A uniform distribution."""
+
+
 class _KnownValueNeeded(TypedDict):
     value: Quantity
 
@@ -414,6 +432,17 @@ class NamedOutput(TypedDict):
     """The name of the column."""
     pointer: str
     """JSON pointer to the number in the reply."""
+
+
+class _NormalNeeded(TypedDict):
+    standard_uncertainty: Quantity
+
+
+class Normal(_NormalNeeded, total=False):
+    """A normal distribution."""
+
+    mean: Quantity
+    """The mean, in the unit of the field; if left out, the number of the base."""
 
 
 class NormalOscillation(TypedDict, total=False):
@@ -882,6 +911,8 @@ class SurfaceCriterion(TypedDict, total=False):
     """Number of cycles that the material withstands, from tests."""
     limit: Quantity
     """The value that the material withstands."""
+
+Uniform = TypedDict("Uniform", {"from": "Quantity", "to": "Quantity"}, total=True)
 
 
 class WearDrive(TypedDict):

@@ -42,6 +42,12 @@ class Accuracy(Result):
     count: int | None
     """Number of rings of the solver in the plane."""
 
+    coupling_bound: float | None
+    """How much stiffer under a normal load the bodies may be at most than they are taken to be, a relative number, if
+    Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts and load
+    curves, for which no bound is known.
+    """
+
     steps: int | None
     """Number of steps on the whole path in the finest discretisation of the rings."""
 
@@ -266,11 +272,17 @@ class Figures(Result):
     normal_force: float
     """Normal force F_N, N."""
 
+    electrical_conductance: float | None
+    """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
+
     max_pressure: float | None
     """Largest pressure, Pa; `null` where it is infinite, and for a profile without a stress field."""
 
     semi_axes: Floats | None
     """Semi-axes of the contact along x and y, m; only for an ellipsoid."""
+
+    thermal_conductance: float | None
+    """Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
 
 class FitReply(Result):
@@ -525,6 +537,12 @@ class PathReply(Result):
             """Of each row: Energy stored in the tangential deformation, J."""
 
         @property
+        def electrical_conductance(self) -> Floats:
+            """Of each row: Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the
+            constriction alone.
+            """
+
+        @property
         def force(self) -> Floats:
             """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
 
@@ -553,6 +571,10 @@ class PathReply(Result):
             """Of each row: Stick radius c of the last move, m: inside it the move did not slip. The contact radius if
             nothing slipped, zero in gross slip.
             """
+
+        @property
+        def thermal_conductance(self) -> Floats:
+            """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
 
 class PlanarReply(Result):
@@ -591,6 +613,12 @@ class PlanarReply(Result):
             """Of each row: Energy stored in the tangential deformation, J."""
 
         @property
+        def electrical_conductance(self) -> Floats:
+            """Of each row: Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the
+            constriction alone.
+            """
+
+        @property
         def indentation(self) -> Floats:
             """Of each row: Indentation d, m; positive when pressed in, below zero the bodies are apart."""
 
@@ -607,6 +635,10 @@ class PlanarReply(Result):
             """Of each row: Stick radius c of the last move, m: inside it the move did not slip, to the width of a
             ring. The contact radius if nothing slipped, zero in gross slip.
             """
+
+        @property
+        def thermal_conductance(self) -> Floats:
+            """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
 
 class PlanarState(Result):
@@ -640,6 +672,12 @@ class PlanarState(Result):
     """Stick radius c of the last move, m: inside it the move did not slip, to the width of a ring. The contact radius
     if nothing slipped, zero in gross slip.
     """
+
+    electrical_conductance: float | None
+    """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
+
+    thermal_conductance: float | None
+    """Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
 
 class ProfileFitReply(Result):
@@ -824,6 +862,12 @@ class RelaxReply(Result):
             """Of each row: Energy stored in the tangential deformation, J."""
 
         @property
+        def electrical_conductance(self) -> Floats:
+            """Of each row: Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the
+            constriction alone.
+            """
+
+        @property
         def indentation(self) -> Floats:
             """Of each row: Indentation d, m; positive when pressed in, below zero the bodies are apart."""
 
@@ -848,6 +892,10 @@ class RelaxReply(Result):
             """Of each row: Stick radius c of the last move, m: inside it the move did not slip. The contact radius if
             nothing slipped, zero in gross slip.
             """
+
+        @property
+        def thermal_conductance(self) -> Floats:
+            """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
 
 class Residual(Result):
@@ -895,6 +943,37 @@ class Residual(Result):
             """Of each row: Place along x in a line contact, m. Without a bulk stress the extrema at −x equal those at
             x and are left out.
             """
+
+
+class RollingReply(Result):
+    """Creep, stick zone and tractions of a cylinder that rolls steadily."""
+
+    accuracy: Accuracy
+    """Solver, errors and time."""
+
+    contact: Figures
+    """The contact at its preload."""
+
+    creep: float
+    """Creep, a pure number."""
+
+    pressure: Floats
+    """Pressure, Pa."""
+
+    ratio: float
+    """Tangential force over μ F_N, a pure number."""
+
+    shear: Floats
+    """Shear stress, Pa; positive with a positive force."""
+
+    stick: Floats
+    """Where the stick zone begins and ends along x, m; it ends at the leading edge."""
+
+    warnings: Rows[Record]
+    """Warnings about the result."""
+
+    x: Floats
+    """Places along x, m, from the trailing edge −a to the leading edge a."""
 
 
 class SessionReply(Result):
@@ -989,6 +1068,12 @@ class SimulateReply(Result):
             """Of each row: Energy stored in the tangential deformation, J."""
 
         @property
+        def electrical_conductance(self) -> Floats:
+            """Of each row: Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the
+            constriction alone.
+            """
+
+        @property
         def force(self) -> Floats:
             """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
 
@@ -1017,6 +1102,46 @@ class SimulateReply(Result):
             """Of each row: Stick radius c of the last move, m: inside it the move did not slip. The contact radius if
             nothing slipped, zero in gross slip.
             """
+
+        @property
+        def thermal_conductance(self) -> Floats:
+            """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
+
+
+class SlidersReply(Result):
+    """Sliders in parallel: each is a spring with a friction cap, and all are moved by the same displacement."""
+
+    accuracy: Accuracy
+    """Solver, errors and time: of the contact, to which the sliders add theirs."""
+
+    contact: Figures
+    """The contact at its preload."""
+
+    density: Record
+    """The density of sliders that the contact itself has."""
+
+    displacement: Floats
+    """Displacements at which the sliders slip on first loading, m, increasing."""
+
+    force_error: float
+    """The largest error of the force on first loading over μ F_N, a pure number. After one reversal it is at most
+    twice that.
+    """
+
+    path_error: float
+    """A bound of the error of the force over μ F_N on any path at this load, a pure number."""
+
+    slip_force: Floats
+    """The forces at which they slip, N; all together μ F_N."""
+
+    stiffness: Floats
+    """Their stiffnesses, N/m."""
+
+    warnings: Rows[Record]
+    """Warnings about the result."""
+
+    work: Record
+    """The work of steady cycles over that of the contact."""
 
 
 class State(Result):
@@ -1054,8 +1179,14 @@ class State(Result):
     in gross slip.
     """
 
+    electrical_conductance: float | None
+    """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
+
     stick_centre: float | None
     """Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
+
+    thermal_conductance: float | None
+    """Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
 
 class StateEvent(Result):
@@ -1163,24 +1294,6 @@ class SubsurfaceReply(Result):
     """Normal stress along z, Pa; tension is positive."""
 
 
-class SweepReply(Swept):
-    """The table of a sweep: one row for each point."""
-
-    columns: dict[str, Floats]
-    """The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a
-    point lacks the number or has no result.
-    """
-
-    failed: int
-    """Number of points without a result."""
-
-    failures: Rows[Record]
-    """The first points without a result."""
-
-    points: int
-    """Number of points, which is the length of each column."""
-
-
 class WearReply(Result):
     """The limit that wear approaches in a contact."""
 
@@ -1252,13 +1365,14 @@ NAMES = [
     "ProtocolReply",
     "RelaxReply",
     "Residual",
+    "RollingReply",
     "SessionReply",
     "SessionSummary",
     "SimulateReply",
+    "SlidersReply",
     "State",
     "StateEvent",
     "StressReply",
     "SubsurfaceReply",
-    "SweepReply",
     "WearReply",
 ]

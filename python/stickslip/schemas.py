@@ -7,6 +7,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "Accuracy": {
         "compute_time": ("", "s"),
         "count": ("", "1"),
+        "coupling_bound": ("", None),
         "force_error": ("", "1"),
         "reason": ("", None),
         "solver": ("", None),
@@ -100,6 +101,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "Figures": {
         "contact_radius": ("", "m"),
         "e_star": ("", "Pa"),
+        "electrical_conductance": ("", "S"),
         "g_star": ("", "Pa"),
         "gross_slip_displacement": ("", "m"),
         "gross_slip_force": ("", "N"),
@@ -107,6 +109,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "max_pressure": ("", "Pa"),
         "normal_force": ("", "N"),
         "semi_axes": ("[]", "m"),
+        "thermal_conductance": ("", "W/K"),
     },
     "FileColumn": {
         "assumed": ("", None),
@@ -363,11 +366,13 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "displacement": ("[]", "m"),
         "dissipated_energy": ("", "J"),
         "elastic_energy": ("", "J"),
+        "electrical_conductance": ("", "S"),
         "force": ("[]", "N"),
         "indentation": ("", "m"),
         "normal_force": ("", "N"),
         "regime": ("", None),
         "stick_radius": ("", "m"),
+        "thermal_conductance": ("", "W/K"),
     },
     "PlanarStress": {
         "friction_work": ("[]", "J/m²"),
@@ -496,6 +501,17 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "samples": ("", "1"),
         "standard_error": ("", "1"),
     },
+    "RollingReply": {
+        "accuracy": ("Accuracy", None),
+        "contact": ("Figures", None),
+        "creep": ("", "1"),
+        "pressure": ("[]", "Pa"),
+        "ratio": ("", "1"),
+        "shear": ("[]", "Pa"),
+        "stick": ("[]", "m"),
+        "warnings": ("[Warning]", None),
+        "x": ("[]", "m"),
+    },
     "RowsLeftOut": {
         "count": ("", "1"),
         "lines": ("#", "1"),
@@ -530,6 +546,10 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "sequence": ("", "1"),
         "updated_at": ("", None),
     },
+    "Share": {
+        "standard_error": ("", "1"),
+        "value": ("", "1"),
+    },
     "SignRuns": {
         "count": ("", "1"),
         "expected": ("", "1"),
@@ -545,6 +565,26 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "subsurface": ("Subsurface", None),
         "warnings": ("[Warning]", None),
     },
+    "SliderDensity": {
+        "density": ("[]", "N/m²"),
+        "displacement": ("[]", "m"),
+    },
+    "SliderWork": {
+        "amplitude": ("[]", "m"),
+        "ratio": ("[]", "1"),
+    },
+    "SlidersReply": {
+        "accuracy": ("Accuracy", None),
+        "contact": ("Figures", None),
+        "density": ("SliderDensity", None),
+        "displacement": ("[]", "m"),
+        "force_error": ("", "1"),
+        "path_error": ("", "1"),
+        "slip_force": ("[]", "N"),
+        "stiffness": ("[]", "N/m"),
+        "warnings": ("[Warning]", None),
+        "work": ("SliderWork", None),
+    },
     "StartReply": {
         "displacement": ("", "m"),
         "stroke": ("", None),
@@ -554,6 +594,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "displacement": ("", "m"),
         "dissipated_energy": ("", "J"),
         "elastic_energy": ("", "J"),
+        "electrical_conductance": ("", "S"),
         "force": ("", "N"),
         "indentation": ("", "m"),
         "memory_depth": ("", "1"),
@@ -561,6 +602,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "regime": ("", None),
         "stick_centre": ("", "m"),
         "stick_radius": ("", "m"),
+        "thermal_conductance": ("", "W/K"),
     },
     "StateEvent": {
         "at": ("", None),
@@ -659,6 +701,22 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "failed": ("", "1"),
         "failures": ("[PointFailure]", None),
         "points": ("", "1"),
+    },
+    "UncertainOutput": {
+        "interval": ("[]", None),
+        "mean": ("", None),
+        "mean_error": ("", None),
+        "name": ("", None),
+        "shares": ("{Share}", None),
+        "standard_uncertainty": ("", None),
+        "standard_uncertainty_error": ("", None),
+    },
+    "UncertaintyReply": {
+        "failed": ("", "1"),
+        "failures": ("[PointFailure]", None),
+        "outputs": ("[UncertainOutput]", None),
+        "points": ("", "1"),
+        "warnings": ("[Warning]", None),
     },
     "Warning": {
         "code": ("", None),

@@ -7,7 +7,9 @@ use stickslip_mechanics::unit_prefix;
 const INDENT: usize = 2;
 const NAMES: usize = 34;
 /// Units that descriptions state, longer ones before those that they begin with.
-const UNITS: [&str; 14] = ["N²/m³", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "Pa", "Hz", "kg", "N", "J", "m³", "m", "s"];
+const UNITS: [&str; 18] = [
+    "N²/m³", "W/K", "Ω·m", "N/m²", "S", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "Pa", "Hz", "kg", "N", "J", "m³", "m", "s",
+];
 
 /// A part of the OpenAPI document, and the document.
 #[derive(Clone, Copy)]

@@ -11,8 +11,28 @@ use crate::equations::{FieldRow, FieldTable, equations, is_end_of};
 use crate::python::file;
 
 /// The units of the fields of replies, longer ones before those that they begin with.
-const UNITS: [&str; 15] =
-    ["N²/m³", "m³", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "m^(1−n)", "Pa", "Hz", "N", "J", "m", "s", "degrees"];
+const UNITS: [&str; 20] = [
+    "N²/m³",
+    "W/(m·K)",
+    "W/K",
+    "Ω·m",
+    "m³",
+    "J/m²",
+    "Pa/N",
+    "N/m²",
+    "N/m",
+    "m/N",
+    "m/s",
+    "m^(1−n)",
+    "Pa",
+    "Hz",
+    "N",
+    "J",
+    "S",
+    "m",
+    "s",
+    "degrees",
+];
 /// What fields write that take their unit from the one that they belong to.
 const OF_ANOTHER: [&str; 2] = ["in the unit of ", "in the SI unit of "];
 
@@ -323,7 +343,7 @@ fn the_reference_knows_the_units_of_the_contract() {
         ("ProfileFitReply", "centre.y", "m"),
         ("FrettingReply", "ruiz_tension", "N²/m³"),
         ("Rating", "values[]", "that of the criterion"),
-        ("Body", "youngs_modulus", "Pa"),
+        ("ElasticBody", "youngs_modulus", "Pa"),
         ("CycleReply", "cycles[].harmonics[].in_phase", "that of the response"),
         ("FitReply", "correlations.{name}.{name}", "1"),
         ("PowerLawProfile", "coefficient", "m^(1−n)"),

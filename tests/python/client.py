@@ -62,7 +62,7 @@ assert get_contact.sync(id=made.id, client=client).sequence == 1
 assert [item.sequence for item in get_history.sync(id=made.id, client=client).items] == [1]
 
 # Events end after as many as are asked for, so that they can be read whole.
-events = watch_contact.sync(id=made.id, client=client, last_event_id=0, limit=1)
+events = watch_contact.sync(id=made.id, client=client, last_event_id_header=0, limit=1)
 assert events.startswith("id: 1\nevent: state\ndata: {") and events.count("data: ") == 1, events
 # Columns of a sweep by names of their own. Gross slip begins at mu F_N.
 contact = {name: value for name, value in ball.to_dict().items() if name != "label"}

@@ -87,7 +87,9 @@ impl Document for SlidersRequest {
             (None, Some(error), None) => Some(sliders::Wanted::ForceError(error)),
             (None, None, Some(error)) => match self.smallest_amplitude {
                 Some(smallest_amplitude) => Some(sliders::Wanted::WorkError { error, smallest_amplitude }),
-                None => faults.refuse(at("smallest_amplitude"), "missing: `work_error` holds from this amplitude on"),
+                None => {
+                    faults.refuse(at("smallest_amplitude"), "`work_error` needs the amplitude from which on it holds")
+                }
             },
             _ => faults.refuse(JsonPath::Root, "expected one of `count`, `force_error`, `work_error`"),
         };

@@ -49,7 +49,7 @@ fn what_has_no_sliders_is_refused_at_its_place() {
         (ball(), json!({"force_error": 1e-9}), "/force_error", "1e-7"),
         (ball(), json!({"force_error": 1.2e-7}), "/force_error", "1000"),
         (ball(), json!({"count": 5, "smallest_amplitude": 1e-9}), "/smallest_amplitude", "work_error"),
-        (ball(), work(json!({})), "/smallest_amplitude", "missing"),
+        (ball(), work(json!({})), "/smallest_amplitude", "needs"),
         (ball(), work(json!({"smallest_amplitude": 1.0})), "/smallest_amplitude", "excluded"),
         (ball(), work(json!({"smallest_amplitude": 0.0})), "/smallest_amplitude", "excluded"),
         (smooth, asked.clone(), "/contact/friction", "friction"),
