@@ -43,9 +43,9 @@ class Accuracy(Result):
     """Number of rings of the solver in the plane."""
 
     coupling_bound: float | None
-    """How much stiffer under a normal load the bodies may be at most than they are taken to be, a relative number, if
-    Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts and load
-    curves, for which no bound is known.
+    """How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure
+    number, if Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts
+    and load curves, for which no bound is known.
     """
 
     steps: int | None

@@ -7,7 +7,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "Accuracy": {
         "compute_time": ("", "s"),
         "count": ("", "1"),
-        "coupling_bound": ("", None),
+        "coupling_bound": ("", "1"),
         "force_error": ("", "1"),
         "reason": ("", None),
         "solver": ("", None),
