@@ -27,6 +27,7 @@ mod tables;
 mod uncertain_inputs;
 mod warnings;
 mod wear;
+mod where_parts_meet;
 
 use serde_json::Value;
 use stickslip_compute::computations::{DisplayOptions, compute, entries};

@@ -92,7 +92,7 @@ fn a_force_of_zero_without_load_or_friction_is_zero_and_moves_nothing() {
     for count in [None, Some(20)] {
         let options = rings::Options { count, tolerance: 1e-3 };
         let state = rings::follow(smooth.setup(), &path, &options, &|| true).unwrap().states[1];
-        assert_eq!(state.force, [0.0; 2], "{count:?}");
+        assert!(state.force.iter().all(|force| force.abs() <= 0.0), "{count:?}: {state:?}");
         let [x, y] = state.displacement;
         assert!((x - 3e-8).hypot(y - 1e-8) < 1e-20, "{count:?}: {state:?}");
     }
