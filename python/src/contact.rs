@@ -127,8 +127,8 @@ impl Contact {
         Ok((PyBytes::new(py, &reply), trace))
     }
 
-    /// The moves after the move `after` and up to `end`, with their states and the cycles that they closed, as the items
-    /// of GET /contacts/{id}/history without times.
+    /// The moves after the move `after` and up to `end`, with their states and the cycles that they closed, as the
+    /// items of GET /contacts/{id}/history without times.
     fn history<'py>(&self, py: Python<'py>, after: usize, end: usize) -> PyResult<Bound<'py, PyBytes>> {
         let items = interruptible(py, |stop| history::items(self, after..end, stop))?;
         Ok(PyBytes::new(py, Value::from(items.map_err(refused)?).to_string().as_bytes()))

@@ -28,8 +28,8 @@ pub const LEAST_WAIT: Duration = Duration::from_secs(1);
 pub const LEAST_PROGRESS: usize = 64 * 1024;
 /// How long a client may take to read a reply that holds a place of memory, so that its bytes have a least rate.
 pub const LARGE_REPLY_TIME: Duration = Duration::from_secs(600);
-/// Bytes that the socket takes beyond what is on its way, and again once half of them are: as many as a client must read
-/// within the time for a stall, so that none that does is taken for one that reads nothing.
+/// Bytes that the socket takes beyond what is on its way, and again once half of them are: as many as a client must
+/// read within the time for a stall, so that none that does is taken for one that reads nothing.
 pub const UNSENT: u32 = 128 * 1024;
 /// How long half a head may still take once the server stops.
 pub const LAST_HEAD: Duration = Duration::from_secs(1);

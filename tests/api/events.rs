@@ -202,7 +202,8 @@ async fn a_fault_in_last_event_id_is_named() {
         assert_eq!((refused.status, refused.code.as_str()), (422, "invalid_input"), "{value}");
         assert_eq!(refused.errors[0].pointer, "/Last-Event-ID");
     }
-    // One that this contact has not reached means from now; that of a query is for a client that cannot send the header.
+    // One that this contact has not reached means from now; that of a query is for a client that cannot send the
+    // header.
     for (query, header) in [("limit=1", Some("7")), ("limit=1&last_event_id=7", None), ("limit=1", None)] {
         let header = header.map(|value| ("last-event-id", value));
         let reply = server.send(Method::GET, &format!("{path}?{query}"), None, header.as_slice()).await;

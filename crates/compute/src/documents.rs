@@ -65,13 +65,16 @@ impl<T: Parse> Parsed for T {
     }
 }
 
+/// A parsed document, or why a body is none.
+pub type ParsedBody = Result<Box<dyn Parsed>, Rejection>;
+
 /// How a kind of document is read from the body of a call.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     /// As [`Document::PARSED`].
     pub parsed: usize,
     /// Parses a body.
-    pub parse: fn(&[u8]) -> Result<Box<dyn Parsed>, Rejection>,
+    pub parse: fn(&[u8]) -> ParsedBody,
 }
 
 impl Kind {

@@ -3,8 +3,8 @@
 //! The potential of a current between two half-spaces obeys the equations of the normal displacement, so that the
 //! conductance of the constriction follows from the load curve alone (Holm 1967; Barber 2003):
 //! C = 2 F_N'(d)/(E* (rho_1 + rho_2)) = 4 X(d)/(rho_1 + rho_2), with X = F_N'/(2 E*) the contact radius where the
-//! contact is round. Heat flows likewise, with 1/k in place of rho. Films, and spots that are not large against the
-//! mean free path of the carriers, resist besides.
+//! contact is round. Heat flows in the same way, with 1/k in place of rho. Films, and spots that are not large against
+//! the mean free path of the carriers, resist besides.
 
 use crate::range;
 use crate::range::error::Error;

@@ -180,9 +180,9 @@ impl Elasticity {
         }
     }
 
-    /// How much stiffer under a normal load the pair may be at most than it is taken to be, relative: the stiffness with
-    /// full stick over that without friction is ln((1 + beta)/(1 - beta))/(2 beta) (Goodman 1962; Spence 1968), and
-    /// finite friction lies between. Zero where the bodies do not couple, `None` where Dundurs' beta is not known.
+    /// How much stiffer under a normal load the pair may be at most than it is taken to be, relative: the stiffness
+    /// with full stick over that without friction is ln((1 + beta)/(1 - beta))/(2 beta) (Goodman 1962; Spence 1968),
+    /// and finite friction lies between. Zero where the bodies do not couple, `None` where Dundurs' beta is not known.
     #[must_use]
     pub fn coupling_bound(&self) -> Option<f64> {
         // The series has the digits that the difference from 1 would lose.

@@ -73,8 +73,7 @@ impl Rolling {
             Drive::Creep(creep) => (Quantity::RollingCreep, creep, largest_creep),
         };
         let part = value / limit;
-        // Not a number is refused too.
-        if !(part.abs() < 1.0) {
+        if part.is_nan() || part.abs() >= 1.0 {
             let limit = short(limit);
             return out(quantity, value, format!("between -{limit} and {limit}, where the whole contact slips"));
         }

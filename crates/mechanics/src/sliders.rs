@@ -304,8 +304,8 @@ impl Sliders {
 }
 
 /// The mean density of sliders over the displacement at which they slip, -d²F/dU² (N/m²), between adjoining ones of
-/// `knots`, m, which rise to the displacement of gross slip: the distribution of Iwan's elements, and Preisach's density
-/// along its diagonal. What a flat contributes slips at the last knot alone and is no density.
+/// `knots`, m, which rise to the displacement of gross slip: the distribution of Iwan's elements, and Preisach's
+/// density along its diagonal. What a flat contributes slips at the last knot alone and is no density.
 #[must_use]
 pub fn density(contact: &Contact, knots: &[f64]) -> Vec<f64> {
     let depth = contact.history.edge().level;

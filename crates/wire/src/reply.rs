@@ -136,9 +136,9 @@ pub struct Accuracy: Default omits Option {
     pub count: Option<usize>,
     /// Number of steps on the whole path in the finest discretisation of the rings.
     pub steps: Option<usize>,
-    /// How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure number, if
-    /// Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts and load
-    /// curves, for which no bound is known.
+    /// How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure
+    /// number, if Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts
+    /// and load curves, for which no bound is known.
     #[serde_with(skip_apply)]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<f64>, required = false)]

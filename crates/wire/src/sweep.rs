@@ -54,8 +54,8 @@ pub struct SweepRequest {
     pub axes: Option<Vec<Axis>> = Items(AXES),
     /// The numbers that are uncertain, in place of `axes`; the reply is then an `UncertaintyReply`.
     pub inputs: Option<Vec<Input>> = Items(INPUTS),
-    /// Base points for `inputs`, each of which takes as many simulations as there are inputs, and two more; 1024 if left
-    /// out.
+    /// Base points for `inputs`, each of which takes as many simulations as there are inputs, and two more; 1024 if
+    /// left out.
     pub samples: Option<usize> = SAMPLES,
     /// The samples of two sweeps with the same seed are the same; 0 if left out.
     pub seed: Option<u64>,

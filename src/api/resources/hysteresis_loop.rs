@@ -16,7 +16,8 @@ parameters! {
     /// How a loop is traced.
     pub struct LoopQuery {
         /// Points for each move, evenly spaced in the quantity that the move prescribes. With 1 they are the recorded
-        /// states; with more, the moves are repeated in small steps on a copy of the contact. A picture has at least 32.
+        /// states; with more, the moves are repeated in small steps on a copy of the contact. A picture has at least
+        /// 32.
         points_per_move: usize = count(&limits::LOOP_POINTS), or 1;
         ..formats(&Format::ALL, "")
     }

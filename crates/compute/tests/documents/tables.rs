@@ -35,9 +35,9 @@ fn written(result: &dyn Written, options: DisplayOptions) -> Option<Value> {
 }
 
 /// Arrays of values by the last names of their paths in the document, joined by `_`: that of `{"pressure": {"after":
-/// [..]}}` by `after` and by `pressure_after`, and one that is called `values` by the name above it. An array of objects
-/// has one for each path within them. The numbers of a pair are called `_x` and `_y`, the objects of a list `_1` and so
-/// on.
+/// [..]}}` by `after` and by `pressure_after`, and one that is called `values` by the name above it. An array of
+/// objects has one for each path within them. The numbers of a pair are called `_x` and `_y`, the objects of a list
+/// `_1` and so on.
 type Series = BTreeMap<String, Vec<Vec<Value>>>;
 
 fn add(path: &[String], values: &[Value], found: &mut Series) {
@@ -50,7 +50,9 @@ fn add(path: &[String], values: &[Value], found: &mut Series) {
 fn collect(value: &Value, path: &[String], found: &mut Series) {
     match value {
         Value::Object(members) => {
-            members.iter().for_each(|(name, member)| collect(member, &[path, &[name.clone()]].concat(), found));
+            members
+                .iter()
+                .for_each(|(name, member)| collect(member, &[path, std::slice::from_ref(name)].concat(), found));
         }
         Value::Array(items) => {
             add(path, items, found);
@@ -82,7 +84,7 @@ fn leaves(item: &Value) -> BTreeMap<Vec<String>, Value> {
                 for (path, value) in leaves(member) {
                     let whole = match path.split_first() {
                         Some((first, rest)) if first.starts_with('_') => [&[name.clone() + first], rest].concat(),
-                        _ => [&[name.clone()], &*path].concat(),
+                        _ => [std::slice::from_ref(name), &*path].concat(),
                     };
                     found.insert(whole, value);
                 }

@@ -79,7 +79,7 @@ fn extrema_on_a_thin_annulus_are_not_below_a_sample() {
         let path = json!({"moves": [{"force": 0.25 * load}]});
         let asked = json!({"path": path, "stress": {"radii": radii}, "residual": true});
         let reply = good(post("/simulate", &changed(request, &asked)));
-        // Infinite, which is none in a document, is above all.
+        // An infinite value, `null` in a document, is above every number.
         let max = reply["residual"]["max"].as_f64().unwrap_or(f64::INFINITY);
         for shear in reply["stress"]["shear"].as_array().unwrap() {
             assert!(number(shear) <= max, "{load} N: {shear} above {max}");

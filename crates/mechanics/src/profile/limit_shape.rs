@@ -1,8 +1,8 @@
 //! The limit of friction at a constant load as a shape: what a contact is pressed into sideways.
 //!
 //! With |tau| <= tau_0 + mu p a spring at x slips where its displacement reaches B(x) = m (d - g(x)) + q sqrt(a^2 -
-//! x^2), m = mu E*/G* and q = 2 tau_0/G* (Bowden & Tabor's law under the Abel transform). B falls from the centre to the
-//! edge. So tangential motion at a constant load is that of a contact with mu = 1 and E* = G*, whose shape is
+//! x^2), m = mu E*/G* and q = 2 tau_0/G* (Bowden & Tabor's law under the Abel transform). B falls from the centre to
+//! the edge. So tangential motion at a constant load is that of a contact with mu = 1 and E* = G*, whose shape is
 //!
 //! g_B(x) = B(0) - B(x) = m g(x) + q (a - sqrt(a^2 - x^2)),
 //!

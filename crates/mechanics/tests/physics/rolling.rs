@@ -40,7 +40,7 @@ fn the_shear_stress_carries_the_force_within_friction_and_sticks_with_one_creep(
     let a = contact.contact_radius();
     let rolling = Rolling::of(&contact, Drive::Ratio(0.6)).unwrap();
     let [from, to] = rolling.stick();
-    assert_eq!(to, a);
+    assert!((to - a).abs() <= 0.0);
     for index in 0..=1000 {
         let x = a * (f64::from(index) / 500.0 - 1.0);
         let limit = FRICTION * contact.pressures(&[x.abs()])[0];
@@ -52,7 +52,7 @@ fn the_shear_stress_carries_the_force_within_friction_and_sticks_with_one_creep(
     let edge = (from / a).asin();
     let force = 0.01 * (integral(&over_angle, -FRAC_PI_2, edge, 1e-9) + integral(&over_angle, edge, FRAC_PI_2, 1e-9));
     assert!((force / (0.6 * FRICTION * 1000.0) - 1.0).abs() < 1e-6, "{force}");
-    assert_eq!([rolling.shear(1.01 * a), rolling.shear(-2.0 * a)], [0.0, 0.0]);
+    assert!([1.01 * a, -2.0 * a].iter().all(|x| rolling.shear(*x).abs() <= 0.0));
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! Contacts whose interface has a shear strength: closed forms, the law itself in r, Masing's rule, and what is refused.
+//! Contacts whose interface has a shear strength: closed forms, the law itself in r, Masing's rule, and what is
+//! refused.
 
 use std::f64::consts::PI;
 

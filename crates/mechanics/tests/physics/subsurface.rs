@@ -284,8 +284,8 @@ fn a_deep_plane_carries_both_forces() {
     for (profile, depth) in shapes() {
         let contact = moved(profile.clone(), depth, &[0.8, -0.5, 0.1]);
         let (a, field) = (contact.contact_radius(), second(&contact));
-        // r = z tan(theta), from the axis to where stresses end, beyond which nothing is left; a round trip in the other
-        // angle by eight points.
+        // r = z tan(theta), from the axis to where stresses end, beyond which nothing is left; a round trip in the
+        // other angle by eight points.
         let depth = 2.0 * a;
         let (mut pressed, mut dragged) = (0.0, 0.0);
         for (share, weight) in nodes(0.1) {

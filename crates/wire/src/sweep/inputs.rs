@@ -140,7 +140,7 @@ impl SweepRequest {
 impl Samples {
     /// Points of each base point: A, B, and one for each input.
     pub fn stride(&self) -> usize {
-        self.inputs.len() + 2
+        self.inputs.len().saturating_add(2)
     }
 
     /// All points.
@@ -150,12 +150,15 @@ impl Samples {
 
     /// The value of an input at a point.
     pub fn value(&self, point: usize, input: usize) -> f64 {
-        let (base, kind) = (point / self.stride(), point % self.stride());
-        let from_second = kind == 1 || kind == input + 2;
-        let stream = 2 * (2 * input + usize::from(from_second));
+        let stride = self.stride();
+        let base = point.checked_div(stride).unwrap_or(0);
+        let kind = point.saturating_sub(base.saturating_mul(stride));
+        let from_second = kind == 1 || kind == input.saturating_add(2);
+        // Two numbers for each input of each of the two points.
+        let stream = (input << 2) | (usize::from(from_second) << 1);
         let uniform = |part: usize| {
             // 53 bits in the middle of their interval: never 0 and never 1.
-            let bits = mixed(self.seed ^ mixed(((base as u64) << 8) | (stream + part) as u64)) >> 11;
+            let bits = mixed(self.seed ^ mixed(((base as u64) << 8) | (stream | part) as u64)) >> 11;
             (bits as f64 + 0.5) / (1_u64 << 53) as f64
         };
         match self.inputs.get(input).map(|input| input.distribution) {
