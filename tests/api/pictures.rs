@@ -14,7 +14,7 @@ const FOLDER: &str = "tests/api/pictures";
 /// How far a line of a vector plot may be from its reference, pixels: coordinates are rounded to whole ones.
 const SHIFT: f64 = 1.0;
 /// Examples of the document: the name of the file, the path, the example and the query.
-const EXAMPLES: [(&str, &str, &str, &str); 12] = [
+const EXAMPLES: [(&str, &str, &str, &str); 14] = [
     ("simulate-steps", "/simulate", "back and forth", "show=steps"),
     ("simulate-stress", "/simulate", "back and forth", "show=stress"),
     ("simulate-residual", "/simulate", "back and forth", "show=residual"),
@@ -24,6 +24,8 @@ const EXAMPLES: [(&str, &str, &str, &str); 12] = [
     ("fretting-section", "/fretting", "section", ""),
     ("fretting-surface", "/fretting", "surface", "criterion=findley"),
     ("wear", "/wear", "ball", ""),
+    ("sliders", "/sliders", "by error", ""),
+    ("rolling", "/rolling", "cylinders", ""),
     ("fretting-work", "/fretting", "surface", "criterion=friction_work"),
     ("fit", "/fit", "steady", ""),
     ("profile", "/profiles/fit", "line", ""),

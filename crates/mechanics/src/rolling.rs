@@ -10,9 +10,9 @@
 //! flat, is (mu a/R)(1 - c/a).
 
 use crate::contact::Contact;
+use crate::range::Quantity;
 use crate::range::error::Error;
 use crate::range::unit_prefix::short;
-use crate::range::{MIN_POSITIVE_FRICTION, Quantity};
 
 /// What drives the rolling; signed, positive along +x.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +37,8 @@ impl Rolling {
     /// Of a cylinder under its present load.
     ///
     /// # Errors
-    /// [`Error::OnlyCylinder`] for another profile; [`Error::OutOfRange`] without friction, without a load, or for a
-    /// drive at which the whole contact would slip.
+    /// [`Error::OnlyCylinder`] for another profile; [`Error::NothingSlides`] without friction or load;
+    /// [`Error::OutOfRange`] for a drive at which the whole contact would slip.
     ///
     /// ```
     /// use stickslip_mechanics::profile::{LineContact, Profile};
@@ -60,12 +60,9 @@ impl Rolling {
     pub fn of(contact: &Contact, drive: Drive) -> Result<Rolling, Error> {
         let radius = contact.profile().line().and_then(|line| line.cylinder_radius()).ok_or(Error::OnlyCylinder)?;
         let out = |quantity, value, allowed: String| Err(Error::OutOfRange { quantity, value, allowed });
-        if contact.friction <= 0.0 {
-            return out(Quantity::Friction, 0.0, format!("{MIN_POSITIVE_FRICTION:e} and more"));
-        }
         let half_width = contact.contact_radius();
-        if contact.indentation() <= 0.0 || half_width <= 0.0 {
-            return out(Quantity::NormalForce, contact.normal_force(), "above 0".to_owned());
+        if contact.friction() <= 0.0 || contact.indentation() <= 0.0 || half_width <= 0.0 {
+            return Err(Error::NothingSlides);
         }
         let largest_creep = contact.friction * half_width / radius;
         let (quantity, value, limit) = match drive {

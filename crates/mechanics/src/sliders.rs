@@ -15,7 +15,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots;
 use crate::profile::Ring;
 use crate::range::error::Error;
-use crate::range::{self, MIN_POSITIVE_FRICTION, Quantity, Range};
+use crate::range::{self, Quantity, Range};
 
 /// Sliders of one set.
 pub const COUNT: Range = Range { quantity: Quantity::Sliders, unit: "", min: 1.0, max: 1000.0 };
@@ -153,9 +153,10 @@ impl Sliders {
     /// The sliders of a contact at its present normal load, as if it had never been moved.
     ///
     /// # Errors
-    /// [`Error::OutOfRange`] without friction, without a load, for a number outside [`COUNT`] or [`ERROR`], for an
-    /// amplitude that is not below that of gross slip, and for an error that takes more than [`COUNT`] sliders;
-    /// [`Error::LineContact`] with a bulk stress; [`Error::Interrupted`] once `keep_going` has returned false.
+    /// [`Error::NothingSlides`] without friction or load; [`Error::OutOfRange`] for a number outside [`COUNT`] or
+    /// [`ERROR`], for an amplitude that is not below that of gross slip, and for an error that takes more than
+    /// [`COUNT`] sliders; [`Error::LineContact`] with a bulk stress; [`Error::Interrupted`] once `keep_going` has
+    /// returned false.
     ///
     /// ```
     #[doc = include_str!("example.txt")]
@@ -169,11 +170,8 @@ impl Sliders {
     /// ```
     pub fn of(contact: &Contact, wanted: Wanted, keep_going: &dyn Fn() -> bool) -> Result<Sliders, Error> {
         let range = |quantity, value, allowed: String| Err(Error::OutOfRange { quantity, value, allowed });
-        if contact.friction <= 0.0 {
-            return range(Quantity::Friction, 0.0, format!("{MIN_POSITIVE_FRICTION:e} and more"));
-        }
-        if contact.indentation() <= 0.0 {
-            return range(Quantity::NormalForce, contact.normal_force(), "above 0".to_owned());
+        if contact.friction() <= 0.0 || contact.indentation() <= 0.0 {
+            return Err(Error::NothingSlides);
         }
         if contact.profile().line().is_some_and(|line| line.bulk().is_some()) {
             return Err(Error::LineContact("sliders with a bulk stress"));

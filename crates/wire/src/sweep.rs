@@ -28,6 +28,8 @@ const AXES: RangeInclusive<usize> = 1..=3;
 const OUTPUTS: RangeInclusive<usize> = 1..=16;
 /// A value of an axis; the field that it goes to has a range of its own.
 const AXIS_VALUE: Range = Range { quantity: Quantity::Number, unit: "", min: -1e280, max: 1e280 };
+/// Seeds of samples.
+const SEED: RangeInclusive<usize> = 0..=4_294_967_295;
 /// Values of an axis that lists them.
 const AXIS_VALUES: Array<Range> = Array(1..=10_000, AXIS_VALUE);
 /// Points of a sweep: the product of the counts of its axes.
@@ -58,7 +60,7 @@ pub struct SweepRequest {
     /// left out.
     pub samples: Option<usize> = SAMPLES,
     /// The samples of two sweeps with the same seed are the same; 0 if left out.
-    pub seed: Option<u64>,
+    pub seed: Option<usize> = SEED,
     /// JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
     /// point lacks the number, such as the third of two peaks, the column has `null`.
     #[schema(example = json!(["/residual/max"]))]

@@ -1,7 +1,6 @@
 //! `rolling`: a cylinder that rolls steadily with a tangential force.
 
 use stickslip_mechanics::Error;
-use stickslip_mechanics::range::Quantity;
 use stickslip_mechanics::rolling::{Drive, Rolling};
 use stickslip_wire::{RollingReply, RollingRequest};
 
@@ -55,8 +54,7 @@ impl Computation for Roll {
         let contact = contact(setup, "/contact")?;
         let rolling = Rolling::of(&contact, drive).map_err(|error| {
             let place = match (&error, drive) {
-                (Error::OutOfRange { quantity: Quantity::Friction, .. }, _) => "/contact/friction",
-                (Error::OutOfRange { quantity: Quantity::NormalForce, .. }, _) => "/contact/preload",
+                (Error::NothingSlides, _) => "/contact",
                 (Error::OutOfRange { .. }, Drive::Ratio(_)) => "/ratio",
                 (Error::OutOfRange { .. }, Drive::Creep(_)) => "/creep",
                 _ => "/contact/profile",

@@ -39,18 +39,11 @@ impl Computation for FindSliders {
     type Outcome = SlidersReply;
 
     fn examples() -> Vec<Example> {
-        vec![
-            example(
-                "by error",
-                "The fewest sliders for an error of 1 % of the limit of friction",
-                json!({"contact": ContactDefinition::example(), "force_error": 0.01}),
-            ),
-            example(
-                "small cycles",
-                "Sliders that keep the work of small cycles",
-                json!({"contact": ContactDefinition::example(), "work_error": 0.1, "smallest_amplitude": 1e-9}),
-            ),
-        ]
+        vec![example(
+            "by error",
+            "The fewest sliders for an error of 1 % of the limit of friction",
+            json!({"contact": ContactDefinition::example(), "force_error": 0.01}),
+        )]
     }
 
     fn bytes((request, ..): &Task<Self>) -> usize {
@@ -109,8 +102,7 @@ impl Computation for FindSliders {
 
 fn refused(error: Error, wanted: Wanted) -> Failure {
     let place = match &error {
-        Error::OutOfRange { quantity: Quantity::Friction, .. } => "/contact/friction",
-        Error::OutOfRange { quantity: Quantity::NormalForce, .. } => "/contact/preload",
+        Error::NothingSlides => "/contact",
         Error::OutOfRange { quantity: Quantity::Displacement, .. } => "/smallest_amplitude",
         _ => match wanted {
             Wanted::Count(_) => "/count",

@@ -256,7 +256,7 @@ mod tests {
     #[test]
     fn lines_are_those_of_the_library() {
         for text in [
-            r#"{"a":[1,2.5e-3,null],"b":{},"c":[],"d":{"e":"x, {y}: [z]"},"f":[[],{}],"g\"h":"\\"}"#,
+            r#"{"a":[1,0.0025,null],"b":{},"c":[],"d":{"e":"x, {y}: [z]"},"f":[[],{}],"g\"h":"\\"}"#,
             "[]",
             "{}",
             "3",

@@ -151,6 +151,7 @@ impl Failure {
                 | mechanics::Error::BodiesNeeded
                 | mechanics::Error::LineContact(_)
                 | mechanics::Error::OnlyCylinder
+                | mechanics::Error::NothingSlides
                 | mechanics::Error::RoundContact(_)
                 | mechanics::Error::ShearStrength(_)
                 | mechanics::Error::BulkNeedsConstantLoad

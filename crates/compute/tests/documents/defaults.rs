@@ -10,9 +10,10 @@ use crate::json::{ball, changed, cylinder, of, timeless, with};
 use crate::{good, post};
 
 /// Members whose default is no value that could be written out, or that no computation has.
-const OTHERS: [(&str, &str); 18] = [
+const OTHERS: [(&str, &str); 19] = [
     ("Axis.name", "the pointer, in a table"),
     ("Input.name", "the pointer, which is no name"),
+    ("CreateRequest.shear_strength", "of a stored contact, as that of a simulation"),
     ("CyclicPath.normal", "a constant load"),
     ("EqualPeaks.cutoff_radius", "zero, which its range excludes"),
     ("FatemiSocie.youngs_modulus", "the same member as `StrainBased.youngs_modulus`"),
@@ -61,6 +62,7 @@ fn simulations() -> Vec<Case> {
         ("CylinderProfile.reference_length", simulate(&cylinder, &moves), length, json!(0.1)),
         ("RoundedPadProfile.reference_length", simulate(&on_line(pad), &moves), length, json!(0.02)),
         ("SimulateRequest.tolerance", plain(), "/tolerance", json!(1e-10)),
+        ("ContactDefinition.shear_strength", plain(), "/contact/shear_strength", json!(0.0)),
         ("SimulateRequest.solver", plain(), "/solver", json!("exact")),
         ("SimulateRequest.steps", plain(), "/steps", json!("all")),
         ("SimulateRequest.residual", plain(), "/residual", json!(false)),

@@ -52,8 +52,8 @@ fn what_has_no_sliders_is_refused_at_its_place() {
         (ball(), work(json!({})), "/smallest_amplitude", "needs"),
         (ball(), work(json!({"smallest_amplitude": 1.0})), "/smallest_amplitude", "excluded"),
         (ball(), work(json!({"smallest_amplitude": 0.0})), "/smallest_amplitude", "excluded"),
-        (smooth, asked.clone(), "/contact/friction", "friction"),
-        (free, asked.clone(), "/contact/preload", "above 0"),
+        (smooth, asked.clone(), "/contact", "nothing slides"),
+        (free, asked.clone(), "/contact", "nothing slides"),
         (cylinder_with_bulk(), asked, "/contact/bulk", "bulk"),
     ] {
         assert_refused("/sliders", &of(&contact, &rest), ("invalid_input", pointer, words));
@@ -75,7 +75,7 @@ fn a_cylinder_rolls_by_carter_and_nothing_else_does() {
         (cylinder(), json!({"ratio": -1.5}), "/ratio", "between"),
         (cylinder(), json!({"creep": 0.1}), "/creep", "between"),
         (cylinder_with_bulk(), json!({"ratio": 0.5}), "/contact/bulk", "bulk"),
-        (with(cylinder(), "/friction", json!(0.0)), json!({"ratio": 0.5}), "/contact/friction", "friction"),
+        (with(cylinder(), "/friction", json!(0.0)), json!({"ratio": 0.5}), "/contact", "nothing slides"),
     ] {
         assert_refused("/rolling", &of(&contact, &rest), ("invalid_input", pointer, words));
     }

@@ -121,6 +121,9 @@ pub enum Error {
         /// Its type in JSON.
         profile: &'static str,
     },
+    /// A contact that carries no tangential force.
+    #[error("without friction and without a load nothing slides")]
+    NothingSlides,
     /// A profile that does not roll.
     #[error("rolling is known for a cylinder alone")]
     OnlyCylinder,

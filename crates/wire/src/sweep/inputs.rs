@@ -133,7 +133,7 @@ impl SweepRequest {
             }
         }
         let base = self.samples.unwrap_or(DEFAULT_SAMPLES);
-        Some(Samples { inputs, base, seed: self.seed.unwrap_or(0) })
+        Some(Samples { inputs, base, seed: self.seed.unwrap_or(0) as u64 })
     }
 }
 

@@ -102,6 +102,8 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
         let place: Vec<&str> = null.split('/').skip(1).collect();
         let allowed = match place[..] {
             // What is known by its load curve alone has no pressures.
+            // No bound is known of lines and load curves.
+            ["accuracy", "coupling_bound"] => true,
             ["contact", "max_pressure"] => {
                 spiked(reply.contact.contact_radius) || !simulation.setup.profile.has_stress_field()
             }
