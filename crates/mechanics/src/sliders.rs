@@ -20,7 +20,7 @@ use crate::range::{self, Quantity, Range};
 /// Sliders of one set.
 pub const COUNT: Range = Range { quantity: Quantity::Sliders, unit: "", min: 1.0, max: 1000.0 };
 /// An error that may be asked for, over mu F_N or the work of a cycle.
-pub const ERROR: Range = Range { quantity: Quantity::SliderError, unit: "", min: 1e-7, max: 0.5 };
+pub const ERROR: Range = Range { quantity: Quantity::SliderError, unit: "", min: 2e-7, max: 0.5 };
 
 /// An error of a chord below this, over mu F_N, is rounding: the curve is straight there.
 const STRAIGHT: f64 = 1e-15;

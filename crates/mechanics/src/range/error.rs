@@ -125,7 +125,7 @@ pub enum Error {
     #[error("without friction and without a load nothing slides")]
     NothingSlides,
     /// A profile that does not roll.
-    #[error("rolling is known for a cylinder alone")]
+    #[error("of round and line contacts, rolling is known for the `cylinder` alone")]
     OnlyCylinder,
     /// Reduced moduli where the bodies must be known.
     #[error("the tangential compliance of an ellipse depends on Poisson's ratio of each body: name the two bodies")]
