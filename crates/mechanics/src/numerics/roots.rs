@@ -10,6 +10,10 @@ const SQUARE: f64 = 1e-11;
 /// The root of an increasing function between two places, from a start between them: Newton's steps, and the middle of
 /// what is left of the bracket where one would leave it. `f` gives value and slope.
 pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    // An interval that rounding has turned round is the point where it begins.
+    if high <= low {
+        return low;
+    }
     let mut x = start.clamp(low, high);
     for _ in 0..MOST_STEPS {
         let (value, slope) = f(x);

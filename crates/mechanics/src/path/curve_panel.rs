@@ -52,7 +52,7 @@ fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -
         let x = inner + width * u * u;
         let level = DoubleDouble::from(contact.indenter.level(x));
         let [risen, left] = [level - ring.inner.level, ring.outer.level - level];
-        let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth));
+        let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth.max(0.0)));
         2.0 * width * u * integrand(x, risen, left)
     };
     let value = gauss::integral(&TWENTY_POINTS, 1.0, over_root);
@@ -81,6 +81,10 @@ impl Contact {
             return None;
         }
         let ring = Ring::between(self.indenter.point(here), self.indenter.point(indentation));
+        // Rounding may leave nothing of a ring, or turn it round.
+        if ring.depth <= 0.0 {
+            return None;
+        }
         let gain = target / self.force_unit() - self.history.force();
         let begun = self.indenter.point(here + (indentation - here) * BEGINNING);
         if gain.abs() > ring.depth * begun.radius {
