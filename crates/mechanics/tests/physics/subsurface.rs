@@ -294,9 +294,14 @@ fn a_deep_plane_carries_both_forces() {
             let area = r * depth / theta.cos().powi(2) * 0.5 * PI * weight * 2.0 * PI / 8.0;
             for j in 0..8 {
                 let turn = PI * (f64::from(j) + 0.5) / 4.0;
-                let stress = field.at([r * turn.cos(), r * turn.sin(), depth]).unwrap_or_default();
-                pressed -= area * stress.zz;
-                dragged -= area * stress.xz;
+                // Beyond a million radii both forces act at a point (Boussinesq; Cerruti).
+                let far = 1.5 / PI * depth / r.hypot(depth).powi(5);
+                let far =
+                    [contact.normal_force() * far * depth.powi(2), contact.force() * far * (r * turn.cos()).powi(2)];
+                let place = [r * turn.cos(), r * turn.sin(), depth];
+                let [zz, xz] = field.at(place).map_or(far, |stress| [-stress.zz, -stress.xz]);
+                pressed += area * zz;
+                dragged += area * xz;
             }
         }
         let limit = 1e-9 * contact.normal_force();
