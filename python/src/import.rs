@@ -5,20 +5,30 @@ use pyo3::prelude::*;
 use serde::Serialize;
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
-use stickslip_measured::import::{Dimension, ImportError, LoopHints, ScanHints, Unit, UnitHint};
-use stickslip_wire::Code;
+use stickslip_measured::import::{ImportError, Mapping, Unit};
+use stickslip_wire::Fault;
 
 use super::problem::refused;
 
-/// The unit of this dimension that the text of a hint names, if it is given.
-fn unit(name: &str, text: Option<&str>, dimension: Dimension) -> PyResult<Option<UnitHint>> {
-    let of = |text| {
-        let unknown = |error: stickslip_measured::import::UnknownUnit| {
-            refused(Refusal::at(Code::UnknownUnit, format!("/{name}"), error.to_string()))
+/// What the keywords of a function say, as a mapping: entries such as `force` with `5:mN`.
+fn mapping(hints: Vec<(String, String)>) -> PyResult<Mapping> {
+    let mut said = Mapping::default();
+    let mut entries = Mapping::default();
+    for (name, hint) in hints {
+        let quantity = name.strip_suffix("_unit").unwrap_or(&name);
+        let read = match name.as_str() {
+            "mapping" => entries.read(&hint),
+            "lateral" | "height" | "displacement_unit" | "force_unit" | "time_unit" | "load_unit" => {
+                said.set_unit(quantity, &hint)
+            }
+            "displacement" | "force" | "time" | "load" | "x" | "y" | "z" => said.set(&name, &format!("\"{hint}\"")),
+            _ => said.set(&name, &hint),
         };
-        UnitHint::of(text, dimension).map_err(unknown)
-    };
-    text.map(of).transpose()
+        read.map_err(|error| {
+            refused(Refusal { errors: vec![Fault::new(format!("/{name}"), error.to_string())], ..error.into() })
+        })?;
+    }
+    Ok(said.preceded_by(entries))
 }
 
 fn written(read: Result<impl Serialize, ImportError>) -> PyResult<String> {
@@ -26,50 +36,16 @@ fn written(read: Result<impl Serialize, ImportError>) -> PyResult<String> {
     serde_json::to_string(&reply).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
-/// A scan of a file, as the reply of POST /files/scan.
+/// A scan of a file, as the reply of POST /files/scan, with the parameters of its query.
 #[pyfunction]
-#[pyo3(signature = (content, lateral=None, height=None, spacing=None, x=None, y=None, z=None, sheet=None))]
-#[expect(clippy::too_many_arguments, reason = "they are the keywords of a Python function")]
-pub fn read_scan(
-    content: &[u8],
-    lateral: Option<&str>,
-    height: Option<&str>,
-    spacing: Option<f64>,
-    x: Option<String>,
-    y: Option<String>,
-    z: Option<String>,
-    sheet: Option<String>,
-) -> PyResult<String> {
-    let lateral = unit("lateral", lateral, Dimension::LENGTH)?;
-    let height = unit("height", height, Dimension::LENGTH)?;
-    written(files::scan(content, ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 }))
+pub fn read_scan(content: &[u8], hints: Vec<(String, String)>) -> PyResult<String> {
+    written(files::scan(content, &mapping(hints)?, &|| true))
 }
 
-/// A loop of a file, as the reply of POST /files/loop.
+/// A loop of a file, as the reply of POST /files/loop, with the parameters of its query.
 #[pyfunction]
-#[pyo3(signature = (
-    content, displacement=None, force=None, time=None, load=None, displacement_unit=None, force_unit=None,
-    time_unit=None, load_unit=None, sheet=None
-))]
-#[expect(clippy::too_many_arguments, reason = "they are the keywords of a Python function")]
-pub fn read_loop(
-    content: &[u8],
-    displacement: Option<String>,
-    force: Option<String>,
-    time: Option<String>,
-    load: Option<String>,
-    displacement_unit: Option<&str>,
-    force_unit: Option<&str>,
-    time_unit: Option<&str>,
-    load_unit: Option<&str>,
-    sheet: Option<String>,
-) -> PyResult<String> {
-    let displacement_unit = unit("displacement_unit", displacement_unit, Dimension::LENGTH)?;
-    let force_unit = unit("force_unit", force_unit, Dimension::FORCE)?;
-    let time_unit = unit("time_unit", time_unit, Dimension::TIME)?;
-    let load_unit = unit("load_unit", load_unit, Dimension::FORCE)?;
-    let units = LoopHints { displacement_unit, force_unit, time_unit, load_unit, ..LoopHints::default() };
-    written(files::measured_loop(content, &LoopHints { displacement, force, time, load, sheet, ..units }))
+pub fn read_loop(content: &[u8], hints: Vec<(String, String)>) -> PyResult<String> {
+    written(files::measured_loop(content, &mapping(hints)?, &|| true))
 }
 
 /// The number that a text such as `20 um` says, in the SI unit `needed`, or in that of its own dimension; `None` for a

@@ -16,28 +16,8 @@ def names() -> list[tuple[str, str | None]]: ...
 def materials() -> str: ...
 def openapi() -> str: ...
 def quantity(text: str, needed: str | None = None) -> float | None: ...
-def read_scan(
-    content: bytes,
-    lateral: str | None = None,
-    height: str | None = None,
-    spacing: float | None = None,
-    x: str | None = None,
-    y: str | None = None,
-    z: str | None = None,
-    sheet: str | None = None,
-) -> str: ...
-def read_loop(
-    content: bytes,
-    displacement: str | None = None,
-    force: str | None = None,
-    time: str | None = None,
-    load: str | None = None,
-    displacement_unit: str | None = None,
-    force_unit: str | None = None,
-    time_unit: str | None = None,
-    load_unit: str | None = None,
-    sheet: str | None = None,
-) -> str: ...
+def read_scan(content: bytes, hints: list[tuple[str, str]]) -> str: ...
+def read_loop(content: bytes, hints: list[tuple[str, str]]) -> str: ...
 
 class Contact:
     def __init__(self, body: bytes) -> None: ...

@@ -17,8 +17,11 @@ from .contact import guarded
 from .documents import Document
 from .errors import InvalidInput
 from .result import Floats
+from .tables import as_csv, is_table
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from typing_extensions import Unpack
 
 #: The most heights that a fit takes.
@@ -42,6 +45,8 @@ class ScanHints(TypedDict, total=False):
     """The column of heights, by name or number."""
     sheet: str | int
     """The sheet of a spreadsheet, by name or number."""
+    mapping: str | Mapping[str, Any]
+    """All of this and more, as the reply has it, or as a dict: {"z": "2:nm", "first_line": 12}."""
 
 
 class LoopHints(TypedDict, total=False):
@@ -65,6 +70,8 @@ class LoopHints(TypedDict, total=False):
     """The unit of normal forces."""
     sheet: str | int
     """The sheet of a spreadsheet, by name or number."""
+    mapping: str | Mapping[str, Any]
+    """All of this and more, as the reply has it, or as a dict: {"force": "5:mN", "first_line": 12}."""
 
 
 @dataclass(frozen=True)
@@ -79,6 +86,14 @@ class Scan:
     columns: tuple[Document, ...] = ()
     #: The lines that are not in the scan: their `count`, and the first of their numbers as `lines`.
     rows_left_out: Document = field(default_factory=dict)
+    #: What each line of the file is: {kind: {"count": ..., "first": ...}}.
+    lines: Document = field(default_factory=dict)
+    #: What is in the file and not in the scan, each with its `line` or `column`, its `text` and the `reason`.
+    unused: tuple[Document, ...] = ()
+    #: What neither the file nor a hint says, in sentences.
+    assumed: tuple[str, ...] = ()
+    #: The mapping that repeats this reading.
+    mapping: str = ""
 
 
 @dataclass(frozen=True)
@@ -92,36 +107,59 @@ class Loop:
     columns: tuple[Document, ...] = ()
     #: The lines that are not in the loop: their `count`, and the first of their numbers as `lines`.
     rows_left_out: Document = field(default_factory=dict)
+    #: What each line of the file is: {kind: {"count": ..., "first": ...}}.
+    lines: Document = field(default_factory=dict)
+    #: What is in the file and not in the loop, each with its `line` or `column`, its `text` and the `reason`.
+    unused: tuple[Document, ...] = ()
+    #: What neither the file nor a hint says, in sentences.
+    assumed: tuple[str, ...] = ()
+    #: The mapping that repeats this reading.
+    mapping: str = ""
 
 
 def content_of(source: str | os.PathLike[str] | bytes) -> bytes:
-    """The bytes of a file."""
+    """The bytes of a file, or of a table with named columns as a file."""
+    if is_table(source):
+        return as_csv(source)
     return source if isinstance(source, bytes) else Path(source).read_bytes()
 
 
+def mapping_of(mapping: str | Mapping[str, Any]) -> str:
+    """A mapping as text: of a dict its entries, of which a pair is a column and its unit."""
+    if isinstance(mapping, str):
+        return mapping
+    text = {name: ":".join(map(str, value)) if isinstance(value, tuple | list) else value for name, value in mapping.items()}
+    return ";".join(f"{name}:{value}" for name, value in text.items())
+
+
 def hints_of(hints: ScanHints | LoopHints) -> dict[str, Any]:
-    """Hints as the importer takes them: a column may be given by its number."""
-    return {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
+    """Hints as the importer takes them: a column may be given by its number, and a mapping as a dict."""
+    plain: dict[str, Any] = {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
+    return {name: mapping_of(hint) if name == "mapping" else hint for name, hint in plain.items()}
 
 
 def _read(read: Any, source: str | os.PathLike[str] | bytes, hints: ScanHints | LoopHints) -> Document:
     """The scan or loop that the importer of the service finds in a file."""
-    found: Document = json.loads(guarded(lambda: read(content_of(source), **hints_of(hints))))
+    said = [(name, str(hint)) for name, hint in hints_of(hints).items() if hint is not None]
+    found: Document = json.loads(guarded(lambda: read(content_of(source), said)))
     return found
 
 
-def _seen(preview: Document) -> tuple[tuple[str, ...], tuple[Document, ...], Document]:
-    return tuple(preview["reading"]), tuple(preview["columns"]), preview["rows_left_out"]
+def _seen(found: Document) -> tuple[Any, ...]:
+    preview = found["preview"]
+    accounts = found.get("lines", {}), tuple(found.get("unused", ())), tuple(found.get("assumed", ()))
+    seen = tuple(preview["reading"]), tuple(preview["columns"]), preview["rows_left_out"]
+    return (*seen, *accounts, found.get("mapping", ""))
 
 
 def scan_of(found: Document) -> Scan:
     """The scan of what an importer found."""
-    return Scan(found["scan"], found["units"], *_seen(found["preview"]))
+    return Scan(found["scan"], found["units"], *_seen(found))
 
 
 def loop_of(found: Document) -> Loop:
     """The loop of what an importer found."""
-    return Loop(found["loop"], found["units"], *_seen(found["preview"]))
+    return Loop(found["loop"], found["units"], *_seen(found))
 
 
 def read_scan(source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]) -> Scan:
@@ -141,7 +179,7 @@ def read_scan(source: str | os.PathLike[str] | bytes, **hints: Unpack[ScanHints]
         found = _read(_native.read_scan, source, hints)
     except InvalidInput as refusal:
         # A fault in a line of columns is one in any program.
-        if isinstance(source, bytes) or refusal.pointer != "":
+        if isinstance(source, bytes) or refusal.pointer != "" or refusal.code != "invalid_input":
             raise
         if find_spec("SurfaceTopography") is None:
             hint = 'other formats of instruments need SurfaceTopography: pip install "stickslip[scans]"'

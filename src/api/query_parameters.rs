@@ -208,7 +208,8 @@ impl<V: 'static> Kind<V> {
         Kind::of(move |text| parse(text).ok_or_else(|| expected.to_owned()), schema)
     }
 
-    fn of(parse: impl Fn(&str) -> Result<V, String> + 'static, schema: impl Fn() -> Value + 'static) -> Kind<V> {
+    /// As [`Kind::new`], for texts of which `parse` itself says what is expected.
+    pub fn of(parse: impl Fn(&str) -> Result<V, String> + 'static, schema: impl Fn() -> Value + 'static) -> Kind<V> {
         let (parse, schema) = (Box::new(parse), Box::new(schema));
         Kind { parse, check: None, is_list: false, schema, default: None, example: None }
     }

@@ -19,6 +19,8 @@ export class Refusal extends Error {
     this.status = status;
     this.code = problem.code;
     this.errors = problem.errors || [];
+    /** What a file may mean, if that is the fault. */
+    this.candidates = problem.candidates || [];
   }
 }
 

@@ -6,11 +6,25 @@ import { FORCE, LENGTH } from "./form_options.js";
 /** How long a text rests before it is read, ms. */
 const REST = 150;
 
+/** The units that fields say, by the entries of a mapping. */
+const UNITS = { displacement: "displacement_unit", force: "force_unit", x: "lateral", y: "lateral", z: "height" };
+
+/** A query with a mapping, in which what the fields say of units stands in place of its own. */
+export function withMapping(given, mapping) {
+  const entry = (text) => {
+    const [name, column] = text.split(":");
+    const unit = given[UNITS[name]];
+    return unit === undefined ? text : `${name}:${column}:${unit}`;
+  };
+  return mapping ? { ...given, mapping: mapping.split(";").map(entry).join(";") } : given;
+}
+
 /** What the service reads in the text field `control`, or in a file that is chosen for it or dropped on it. `query`
  *  says what is known beside, `taken` gets each reply, or the error in its place, and `fresh` is called when there is
  *  something else to read. */
 export function fileSource(kind, control, query, taken, fresh) {
   let file = null;
+  let mapping = "";
   let latest = 0;
   let reading = Promise.resolve();
   const body = () => file ?? new Blob([control.value]);
@@ -18,7 +32,7 @@ export function fileSource(kind, control, query, taken, fresh) {
     const number = (latest += 1);
     reading = new Promise((resolve) => setTimeout(resolve, rest)).then(async () => {
       if (number !== latest || !body().size) return;
-      const ask = async () => call("POST", `/files/${kind}?${new URLSearchParams(query())}`, body());
+      const ask = async () => call("POST", `/files/${kind}?${new URLSearchParams(withMapping(query(), mapping))}`, body());
       const [reply, error] = await ask().then(
         (reply) => [reply],
         (error) => [null, error],
@@ -31,6 +45,7 @@ export function fileSource(kind, control, query, taken, fresh) {
   const open = (chosen) => {
     if (!chosen) return;
     file = chosen;
+    mapping = "";
     control.value = "";
     control.placeholder = chosen.name;
     fresh();
@@ -38,6 +53,7 @@ export function fileSource(kind, control, query, taken, fresh) {
   };
   control.addEventListener("input", () => {
     file = null;
+    mapping = "";
     control.placeholder = "";
     fresh();
     read(REST);
@@ -54,13 +70,18 @@ export function fileSource(kind, control, query, taken, fresh) {
     do await (last = reading);
     while (last !== reading);
   };
-  return { input, open, read, settled };
+  /** Reads again with entries that precede all else. */
+  const map = (entries) => {
+    mapping = entries;
+    read();
+  };
+  return { input, open, read, map, settled };
 }
 
 /** What a reply took for what, without how the text is written, or what is wrong with the file. */
 export function readingText(reply, error) {
   const text = reply ? reply.preview.reading.slice(1).join(" ") : reason(error);
-  return plain(text.replace(/name the unit by `[^`]*`/, "choose the unit below"));
+  return plain(text.replace(/name the unit by `[^`]*`( or `[^`]*`)?/, "choose the unit below"));
 }
 
 /** What a quantity of a reply is called. */
@@ -68,34 +89,95 @@ const NAMES = { x: "place x", y: "place y", z: "height", normal_force: "normal l
 /** Columns that are shown one by one. */
 const MOST_COLUMNS = 40;
 
-/** A table of what each column of a file was taken for, with the lines that were left out; `show` fills it from a
- *  reply, or empties it. */
-export function columnsTable() {
+/** What may be chosen for a column, by the kind of file. */
+const CHOICES = { loop: ["displacement", "force", "time", "load"], scan: ["x", "y", "z"] };
+/** What a kind of line is called. */
+const KINDS = {
+  preamble: "before the table",
+  names: "names",
+  units: "units",
+  remark: "remark",
+  data: "row",
+  figure: "figure of many rows",
+  second_table: "other table",
+  zeros: "zeros at the end",
+};
+
+/** A mapping in which a column is another quantity, or none, and the others are as they were. */
+export function remapped(mapping, column, quantity) {
+  const entries = mapping.split(";").filter(Boolean);
+  const of = (entry) => entry.split(":");
+  const isColumn = (entry) => [...CHOICES.loop, ...CHOICES.scan].includes(of(entry)[0]);
+  const own = entries.find((entry) => isColumn(entry) && of(entry)[1] === String(column));
+  const kept = entries.filter((entry) => entry !== own && of(entry)[0] !== quantity);
+  // What may be absent stays away; the unit of another column is not its own.
+  const [was] = own ? of(own) : [];
+  const away = ["time", "load", "y"].includes(was) && was !== quantity ? [`${was}:none`] : [];
+  return [...kept, ...away, ...(quantity ? [`${quantity}:${column}`] : [])].join(";");
+}
+
+/** What each column and line of a file was taken for, in colours, with a choice for each column; or what the file may
+ *  mean, as buttons. `map` reads the file again with a mapping; `show` fills all from a reply, an error, or nothing. */
+export function columnsTable(kind, map) {
   const rows = el("tbody", {});
   const rest = el("p", { class: "note" });
   const head = el(
     "tr",
     {},
-    ["Column", "Name in the file", "Taken for"].map((name) => el("th", { scope: "col" }, name)),
+    ["Column", "Name in the file", "Taken for", "Choose"].map((name) => el("th", { scope: "col" }, name)),
   );
-  const element = el("div", { class: "columns", hidden: true }, el("table", {}, el("thead", {}, head), rows), rest);
+  const lines = el("tbody", {});
+  const shown = el("table", { class: "file-lines", "aria-label": "Lines of the file" }, lines);
+  const candidates = el("ul", { class: "candidates", "aria-label": "What the file may mean" });
+  const table = el("table", {}, el("thead", {}, head), rows);
+  const element = el("div", { class: "columns", hidden: true }, candidates, table, shown, rest);
   const taken = ({ quantity, unit, assumed, left_out: why }) =>
     quantity
       ? `${NAMES[quantity] ?? quantity}, in ${unit}${assumed ? ", which is assumed" : ""}`
       : `left out: ${plain(why ?? "")}`;
-  const row = (column, index) =>
+  const choice = (reply, column, index) => {
+    const own = column.quantity === "normal_force" ? "load" : (column.quantity ?? "");
+    const option = (value) => el("option", { value, selected: value === own }, value || "nothing");
+    const onchange = (event) => map(remapped(reply.mapping, index + 1, event.target.value));
+    return el("select", { "aria-label": `Column ${index + 1} is`, onchange }, ["", ...CHOICES[kind()]].map(option));
+  };
+  const row = (reply) => (column, index) =>
     el(
       "tr",
       { class: column.quantity ? false : "faint" },
       [index + 1, column.name ?? "–", taken(column)].map((cell) => el("td", {}, String(cell))),
+      el("td", {}, choice(reply, column, index)),
     );
-  const show = (reply) => {
-    const { columns = [], rows_left_out: left = { count: 0, lines: [] } } = reply?.preview ?? {};
-    element.hidden = !columns.length && !left.count;
-    rows.replaceChildren(...columns.slice(0, MOST_COLUMNS).map(row));
+  const line = ({ line: number, kind: what, cells }) =>
+    el(
+      "tr",
+      { class: `line-${what}`, title: KINDS[what] },
+      el("th", { scope: "row" }, `${number}: ${KINDS[what]}`),
+      cells.map((cell) => el("td", {}, cell)),
+    );
+  const candidate = ({ name, column, values, mapping }) =>
+    el(
+      "li",
+      {},
+      el(
+        "button",
+        { type: "button", class: "quiet", onclick: () => map(mapping) },
+        `${column ? `Column ${column}: ` : ""}${name}`,
+      ),
+      values.length ? ` ${values.join(", ")}` : "",
+    );
+  const show = (reply, error) => {
+    const { columns = [], table: some = [], rows_left_out: left = { count: 0, lines: [] } } = reply?.preview ?? {};
+    const open = error?.candidates ?? [];
+    element.hidden = !columns.length && !left.count && !open.length;
+    table.hidden = !columns.length;
+    shown.hidden = !some.length;
+    candidates.replaceChildren(...open.map(candidate));
+    rows.replaceChildren(...columns.slice(0, MOST_COLUMNS).map(row(reply)));
+    lines.replaceChildren(...some.map(line));
     const more = columns.length > MOST_COLUMNS ? `${columns.length - MOST_COLUMNS} more columns are not shown. ` : "";
-    const lines = left.lines.slice(0, 10).join(", ") + (left.count > 10 ? ` and ${left.count - 10} more` : "");
-    rest.textContent = more + (left.count ? `Lines that were left out: ${lines}.` : "");
+    const numbers = left.lines.slice(0, 10).join(", ") + (left.count > 10 ? ` and ${left.count - 10} more` : "");
+    rest.textContent = more + (left.count ? `Lines that were left out: ${numbers}.` : "");
   };
   return { element, show };
 }

@@ -37,12 +37,15 @@ function measuredFile(loop, changed) {
   const one = { opened: () => {} };
   const columns = loopColumns("measured ");
   const said = el("p", { class: "note", id: "overlay-said", "aria-live": "polite" });
-  const table = columnsTable();
+  const table = columnsTable(
+    () => "loop",
+    (mapping) => source.map(mapping),
+  );
   let name = "";
   let points = [];
   const taken = (reply, error) => {
     columns.show(reply);
-    table.show(reply);
+    table.show(reply, error);
     const { displacement = [], force = [] } = reply?.loop ?? {};
     const factor = (quantity) => 10 ** powerOfUnit(reply.units[quantity]);
     points = displacement.map((value, index) => [value * factor("displacement"), force[index] * factor("force")]);

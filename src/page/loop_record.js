@@ -27,13 +27,16 @@ export function loopRecord(form, index) {
   const load = optional("normal_force", "Load, if not that of the contact", { units: FORCE, unit: "N" });
   const weight = optional("weight", "Weight relative to the other records");
   const said = el("p", { class: "note", "aria-live": "polite" });
-  const table = columnsTable();
+  const table = columnsTable(
+    () => "loop",
+    (mapping) => source.map(mapping),
+  );
   let found = null;
   const taken = (reply, error) => {
     found = reply;
     said.textContent = readingText(reply, error);
     columns.show(reply);
-    table.show(reply);
+    table.show(reply, error);
   };
   const source = fileSource("loop", text.control, columns.query, taken, columns.reset);
   const element = el(

@@ -76,7 +76,10 @@ function columns(form, at, changed, body, type) {
   const text = new TextField(form, at, label, el("textarea", { rows: 8, spellcheck: "false", value: "" }));
   text.control.value = example;
   const said = el("p", { class: "note", "aria-live": "polite" });
-  const table = columnsTable();
+  const table = columnsTable(
+    () => kind,
+    (mapping) => source.map(mapping),
+  );
   const isScan = type === "tabulated";
   const spacing = numberBox({ size: 8, "aria-label": "Distance of neighbours in a map" });
   let found = null;
@@ -111,7 +114,7 @@ function columns(form, at, changed, body, type) {
       for (const unit of unnamed) chosen.add(unit);
       return void source.read();
     }
-    table.show(reply);
+    table.show(reply, error);
     said.textContent = error || isScan ? readingText(reply, error) : "";
     changed();
   };

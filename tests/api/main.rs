@@ -40,6 +40,7 @@ mod protocols;
 mod settings;
 mod subsurface;
 mod sweeps;
+mod table_files;
 mod tls;
 mod unread_bodies;
 mod warnings;

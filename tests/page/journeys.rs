@@ -78,8 +78,8 @@ async fn scan_a_file_of_an_instrument_becomes_the_contact_radius() {
 }
 
 /// The cells of the table of columns.
-const TABLE: &str = "[...document.querySelectorAll('#loop-card .columns tbody tr')].map((row) => [...row.cells].map(\
-                     (cell) => cell.innerText).join(' | '))";
+const TABLE: &str = "[...document.querySelectorAll('#loop-card .columns table:not(.file-lines) tbody tr')].map(\
+                     (row) => [...row.cells].map((cell) => cell.innerText).join(' | '))";
 
 #[tokio::test]
 async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction_and_a_contact() {
@@ -128,6 +128,20 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction_and_a_contac
     browser.until(&format!("{TABLE}.some((row) => row.includes('displacement, in mil'))")).await;
     browser.click("#compute-loop").await;
     browser.says("#loop-estimates", "friction μ 0.3 (95 %").await;
+
+    // Two load cells: each is a button, and with one the lines are shown by their kinds. Another column is the load by a
+    // choice, and what was chosen before stays.
+    upload("tests/table_files/loop_two_load_cells.csv").await;
+    browser.says("#loop-card .candidates", "Column 4: Normal force left (N)").await;
+    browser.says("#loop-card .candidates", "Column 5: Normal force right (N)").await;
+    browser.click("#loop-card .candidates li:nth-child(1) button").await;
+    browser.until(&format!("{TABLE}[3]?.includes('normal load, in N')")).await;
+    browser.counts("#loop-card .file-lines .line-names", 1).await;
+    browser.set("#loop-card [aria-label='Column 5 is']", "load").await;
+    browser.until(&format!("{TABLE}[4]?.includes('normal load, in N') && {TABLE}[3]?.includes('left out')")).await;
+    browser.set("#loop-card [aria-label='Column 5 is']", "").await;
+    browser.until(&format!("{TABLE}[4]?.includes('left out') && {TABLE}[1]?.includes('displacement, in um')")).await;
+    assert_eq!(axe::serious(browser).await, [""; 0]);
 
     // Columns and units come from the header, the time too.
     upload("examples/data/ball_loop.csv").await;

@@ -1,8 +1,8 @@
 //! Why a request has no reply, as the problem document says it.
 
-use stickslip_measured::import::ImportError;
+use stickslip_measured::import::{Candidate, ImportError};
 use stickslip_mechanics::Error;
-use stickslip_wire::ProblemDocument;
+use stickslip_wire::{FileCandidate, ProblemDocument};
 
 use crate::formats::Unwritable;
 use crate::prelude::*;
@@ -16,6 +16,8 @@ pub struct Refusal {
     pub detail: String,
     /// Each fault of the request with its place.
     pub errors: Vec<Fault>,
+    /// What a file may mean, each with the mapping that chooses it.
+    pub candidates: Vec<FileCandidate>,
     /// The cause for the log, which clients do not see.
     pub cause: Option<String>,
 }
@@ -23,7 +25,7 @@ pub struct Refusal {
 impl Refusal {
     /// A refusal of this kind, with a text of what happened.
     pub fn new(code: Code, detail: impl Into<String>) -> Refusal {
-        Refusal { code, detail: detail.into(), errors: Vec::new(), cause: None }
+        Refusal { code, detail: detail.into(), errors: Vec::new(), candidates: Vec::new(), cause: None }
     }
 
     /// A refusal with one place in the request.
@@ -42,7 +44,9 @@ impl Refusal {
 
     /// The problem document of the refusal.
     pub fn document(self, request_id: &str) -> ProblemDocument {
-        ProblemDocument::new(self.code, self.detail, self.errors, request_id)
+        let mapping = self.candidates.first().map(|first| first.mapping.clone());
+        let document = ProblemDocument::new(self.code, self.detail, self.errors, request_id);
+        ProblemDocument { candidates: self.candidates, mapping, ..document }
     }
 }
 
@@ -68,8 +72,20 @@ impl From<ImportError> for Refusal {
     fn from(error: ImportError) -> Self {
         let place = |name: &str, number: Option<usize>| number.map_or_else(String::new, |at| format!("/{name}/{at}"));
         let pointer = place("line", error.line) + &place("column", error.column);
-        let code = if error.unknown_unit.is_some() { Code::UnknownUnit } else { Code::InvalidInput };
-        Refusal::at(code, pointer, error.to_string())
+        let code = match (&error.unknown_unit, error.candidates.is_empty()) {
+            (Some(_), _) => Code::UnknownUnit,
+            (None, false) => Code::AmbiguousFile,
+            (None, true) => Code::InvalidInput,
+        };
+        let refusal = Refusal::at(code, pointer, error.to_string());
+        let candidate = |Candidate { quantity, column, name, values, mapping }| FileCandidate {
+            quantity: String::from(quantity),
+            column,
+            name,
+            values,
+            mapping,
+        };
+        Refusal { candidates: error.candidates.into_iter().map(candidate).collect(), ..refusal }
     }
 }
 

@@ -1,5 +1,7 @@
 //! What `POST /files/scan` and `POST /files/loop` are told of a file of an instrument, and what they find in it.
 
+use std::collections::BTreeMap;
+
 use crate::fit::{FitUnits, MeasuredLoop};
 use crate::prelude::*;
 use crate::profile_fit::{ScanData, ScanUnits};
@@ -22,6 +24,8 @@ pub struct ScanFileHints {
     pub z: Option<String>,
     /// The sheet of a spreadsheet, by its name or its number from 1 on.
     pub sheet: Option<String>,
+    /// All of this and more in one text, such as `x:1:um;z:2:nm;first_line:12`.
+    pub mapping: Option<String>,
 }
 
 /// What is known of a loop besides its file: the query of `POST /files/loop`. Units are texts such as `um`, `mil` or
@@ -46,6 +50,8 @@ pub struct LoopFileHints {
     pub load_unit: Option<String>,
     /// The sheet of a spreadsheet, by its name or its number from 1 on.
     pub sheet: Option<String>,
+    /// All of this and more in one text, such as `displacement:3:um;force:5:mN;load:none;first_line:12`.
+    pub mapping: Option<String>,
 }
 
 replies! {
@@ -58,6 +64,15 @@ pub struct ScanFileReply {
     pub units: ScanUnits,
     /// How the file was read.
     pub preview: FilePreview,
+    /// What each line of the file is: for each kind (`preamble`, `names`, `units`, `remark`, `data`, `figure`,
+    /// `second_table`, `zeros`, `blank`) the number of lines.
+    pub lines: BTreeMap<String, LineCount>,
+    /// What is in the file and not in the reply.
+    pub unused: Vec<UnusedPart>,
+    /// What neither the file nor the query says, in sentences.
+    pub assumed: Vec<String>,
+    /// The value of the parameter `mapping` that repeats this reading, whatever later versions make of the file.
+    pub mapping: String,
 }
 
 /// A measured loop that was read from a file. In the body of `POST /fit`, `loop` is an item of `loops`, and `units` is
@@ -71,6 +86,49 @@ pub struct LoopFileReply {
     pub units: FitUnits,
     /// How the file was read.
     pub preview: FilePreview,
+    /// What each line of the file is: for each kind (`preamble`, `names`, `units`, `remark`, `data`, `figure`,
+    /// `second_table`, `zeros`, `blank`) the number of lines.
+    pub lines: BTreeMap<String, LineCount>,
+    /// What is in the file and not in the reply.
+    pub unused: Vec<UnusedPart>,
+    /// What neither the file nor the query says, in sentences.
+    pub assumed: Vec<String>,
+    /// The value of the parameter `mapping` that repeats this reading, whatever later versions make of the file.
+    pub mapping: String,
+}
+
+/// The lines of a kind.
+pub struct LineCount: Eq {
+    /// How many there are.
+    pub count: usize,
+    /// The number of the first, counted from 1.
+    pub first: usize,
+}
+
+/// A part of a file that is not in the reply.
+pub struct UnusedPart: Eq {
+    /// Its line, counted from 1; `null` if it is a column.
+    pub line: Option<usize>,
+    /// Its column, counted from 1; `null` if it is a line.
+    pub column: Option<usize>,
+    /// What stands there, at the beginning.
+    pub text: String,
+    /// Why it is not used.
+    pub reason: String,
+}
+
+/// One of several things that a file may mean.
+pub struct FileCandidate: Eq {
+    /// What would be chosen: `displacement`, `force`, `time`, `load`, `x`, `z`, `table`, `sheet` or `decimal`.
+    pub quantity: String,
+    /// The number of its column, counted from 1, if it is one.
+    pub column: Option<usize>,
+    /// Its name in the file, or what it would be.
+    pub name: String,
+    /// Its first values, as the file has them.
+    pub values: Vec<String>,
+    /// The value of the parameter `mapping` with which this one is read.
+    pub mapping: String,
 }
 }
 
@@ -137,7 +195,7 @@ replies! {
 pub struct FilePreview {
     /// The encoding, such as `UTF-8` or `UTF-16LE`, or the kind of a spreadsheet.
     pub encoding: String,
-    /// The separator of columns: `semicolon`, `tab`, `white_space` or `comma`.
+    /// The separator of columns: `semicolon`, `tab`, `pipe`, `white_space`, `comma`, or another sign itself.
     pub separator: String,
     /// The decimal mark: `.` or `,`.
     pub decimal_mark: String,
@@ -153,6 +211,18 @@ pub struct FilePreview {
     pub thinned: usize,
     /// How columns and units were interpreted, in sentences.
     pub reading: Vec<String>,
+    /// The first lines of each kind, cell by cell; none of a grid with a header of its own.
+    pub table: Vec<ShownFileLine>,
+}
+
+/// A line of a file, cell by cell.
+pub struct ShownFileLine: Eq {
+    /// Its number, counted from 1.
+    pub line: usize,
+    /// What it is, as in `lines`.
+    pub kind: String,
+    /// Its first cells, the first characters of each.
+    pub cells: Vec<String>,
 }
 
 /// A column of a file.

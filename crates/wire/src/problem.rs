@@ -1,5 +1,6 @@
 //! The document that every refusal comes as (RFC 9457), and the table of its kinds.
 
+use crate::files::FileCandidate;
 use crate::prelude::*;
 
 /// Declares [`Code`]: for each kind when to use it, its status, code and title, and what a client can do.
@@ -103,6 +104,9 @@ codes! {
     /// A file names a unit that is not in the table of units, or a unit of another quantity than is needed there.
     UnknownUnit = 422 "unknown_unit": "A unit of the file is not known",
         "correct the header of the file, or name the unit in the query: [units](measured-surfaces.md#units)";
+    /// A file may mean several things. `candidates` has each with the `mapping` that chooses it.
+    AmbiguousFile = 422 "ambiguous_file": "The file may mean several things",
+        "choose one of `candidates` by its `mapping`: [files](measured-loops.md#a-file-that-asks)";
     /// The request is valid, but no state carries the tangential force that it asks for.
     ForceExceedsFriction = 422 "force_exceeds_friction": "The tangential force is not below the friction limit",
         "the force must stay below μ F_N, which `detail` gives";
@@ -187,6 +191,13 @@ pub struct ProblemDocument {
     /// Each fault of the request with its place.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub errors: Vec<Fault>,
+    /// What a file may mean, if it may mean several things.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub candidates: Vec<FileCandidate>,
+    /// The value of the parameter `mapping` with which the first of `candidates` is read.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schema(nullable = false)]
+    pub mapping: Option<String>,
     /// The identifier of the request, by which the operator of the server finds it in the log; also in the header
     /// `x-request-id`.
     pub request_id: String,
@@ -203,6 +214,8 @@ impl ProblemDocument {
             detail,
             code: code.as_str().to_owned(),
             errors,
+            candidates: Vec::new(),
+            mapping: None,
             request_id: request_id.to_owned(),
         }
     }

@@ -3,7 +3,9 @@
 use serde::Serialize;
 use serde_json::json;
 
-use stickslip_measured::import::{Dimension, ImportError, LoopHints, ScanHints, UnitHint};
+use stickslip_compute::Stop as _;
+use stickslip_compute::simulation::Failure;
+use stickslip_measured::import::{Dimension, ImportError, Mapping, UnitHint};
 use stickslip_mechanics::range::{Quantity, Range};
 use stickslip_wire::limits::Characters;
 use stickslip_wire::{LoopFileReply, ScanFileReply};
@@ -38,6 +40,16 @@ fn time() -> Kind<UnitHint> {
 }
 /// A column by its name or number.
 const COLUMN: Characters = Characters(100);
+/// A mapping, of so many bytes at most.
+const MAPPING: usize = 2000;
+fn mapping() -> Kind<Mapping> {
+    let schema = || json!({"type": "string", "maxLength": MAPPING, "pattern": "^([a-z_]+:[^;]+;?)*$"});
+    let read = |text: &str| match text.len() {
+        ..=MAPPING => Mapping::parse(text).map_err(|error| format!("a mapping: {error}")),
+        _ => Err(format!("a text of at most {MAPPING} bytes")),
+    };
+    Kind::of(read, schema)
+}
 /// The distance of neighbours in a matrix, in its unit.
 const SPACING: Range = Range { quantity: Quantity::Place, unit: "", min: 1e-9, max: 1e9 };
 
@@ -68,6 +80,11 @@ parameters! {
         z: String = text(&COLUMN);
         /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first sheet with numbers.
         sheet: String = text(&COLUMN);
+        /// All of this and more in one text, of entries with semicolons between them: `x:COLUMN:UNIT`, `y`, `z`
+        /// (`y:none`), of a matrix `spacing`, `lateral`, `height`, `first_column` and `last_column`; `first_line`,
+        /// `last_line`, `table`, `sheet`, `separator` (`semicolon`, `tab`, `comma`, `pipe`, `white_space` or the sign)
+        /// and `decimal` (`point` or `comma`). An entry precedes the parameter of its name, and what the file says.
+        mapping: Mapping = mapping();
     }
 }
 
@@ -80,9 +97,10 @@ parameters! {
         /// The column of forces, by its number or the beginning of its name; without it the column with such a name, or
         /// the second of two.
         force: String = text(&COLUMN);
-        /// The column of times; without it the column with such a name, if its times increase.
+        /// The column of times, or `none`; without it the column with such a name, if its times do not fall.
         time: String = text(&COLUMN);
-        /// The column of loads, whose mean is the load if they are constant; without it the column with such a name.
+        /// The column of loads, whose mean is the load if they are constant, `none`, or the load with its unit (`10 N`);
+        /// without it the column with such a name.
         load: String = text(&COLUMN);
         /// The unit of displacements; without it the one that the header names, or m.
         displacement_unit: UnitHint = length();
@@ -94,21 +112,50 @@ parameters! {
         load_unit: UnitHint = force();
         /// The sheet of a spreadsheet, by its name or its number from 1 on; without it the first sheet with numbers.
         sheet: String = text(&COLUMN);
+        /// All of this and more in one text, of entries with semicolons between them: `displacement:COLUMN:UNIT`,
+        /// `force`, `time` (with a unit, or a format such as `mm:ss`) and `load`; `first_line`, `last_line`, `table`,
+        /// `sheet`, `separator` (`semicolon`, `tab`, `comma`, `pipe`, `white_space` or the sign) and `decimal` (`point`
+        /// or `comma`). An entry precedes the parameter of its name, and what the file says.
+        mapping: Mapping = mapping();
     }
 }
 
-impl From<ScanFileQuery> for ScanHints {
-    fn from(query: ScanFileQuery) -> ScanHints {
-        let ScanFileQuery { lateral, height, spacing, x, y, z, sheet } = query;
-        ScanHints { lateral, height, spacing, x, y, z, sheet, most: 0 }
+impl TryFrom<ScanFileQuery> for Mapping {
+    type Error = ImportError;
+
+    fn try_from(query: ScanFileQuery) -> Result<Mapping, ImportError> {
+        let ScanFileQuery { lateral, height, spacing, x, y, z, sheet, mapping } = query;
+        let mut said = Mapping::default();
+        said.say_unit("lateral", lateral);
+        said.say_unit("height", height);
+        said.say_spacing(spacing);
+        for (axis, column) in [("x", x), ("y", y), ("z", z)] {
+            said.say_column(axis, column.as_deref())?;
+        }
+        said.say_sheet(sheet);
+        Ok(said.preceded_by(mapping.unwrap_or_default()))
     }
 }
 
-impl From<LoopFileQuery> for LoopHints {
-    fn from(query: LoopFileQuery) -> LoopHints {
-        let LoopFileQuery { displacement, force, time, load, sheet, .. } = query;
+impl TryFrom<LoopFileQuery> for Mapping {
+    type Error = ImportError;
+
+    fn try_from(query: LoopFileQuery) -> Result<Mapping, ImportError> {
+        let LoopFileQuery { displacement, force, time, load, sheet, mapping, .. } = query;
         let LoopFileQuery { displacement_unit, force_unit, time_unit, load_unit, .. } = query;
-        LoopHints { displacement, force, time, load, displacement_unit, force_unit, time_unit, load_unit, sheet }
+        let mut said = Mapping::default();
+        let quantities = [
+            ("displacement", displacement, displacement_unit),
+            ("force", force, force_unit),
+            ("time", time, time_unit),
+            ("load", load, load_unit),
+        ];
+        for (quantity, column, unit) in quantities {
+            said.say_column(quantity, column.as_deref())?;
+            said.say_unit(quantity, unit);
+        }
+        said.say_sheet(sheet);
+        Ok(said.preceded_by(mapping.unwrap_or_default()))
     }
 }
 
@@ -118,7 +165,7 @@ impl From<LoopFileQuery> for LoopHints {
 /// columns and units were interpreted. Columns and units are found by the header; without one, two columns are x and z
 /// of a line, three are x, y and z, and more are a matrix, as Gwyddion exports it. Zygo's text format, ISO 25178-71 and
 /// grids are known by their first line. An unknown unit is refused with the code `unknown_unit`, its line and its
-/// column. A file with more heights than a scan may have is thinned. The body may also be sent as `text/csv` or
+/// column, a file that may mean several things with `ambiguous_file` and the mapping for each. A file with more heights than a scan may have is thinned. The body may also be sent as `text/csv` or
 /// `text/plain`.
 #[utoipa::path(
     post, path = "/files/scan", tag = "simulation", params(ScanFileQuery),
@@ -130,7 +177,8 @@ pub async fn read_scan_file(
     CheckedQuery(hints): CheckedQuery<ScanFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    answer(body, move |bytes, _| files::scan(bytes, hints.into())).await
+    let mapping = Mapping::try_from(hints)?;
+    answer(body, move |bytes, proceed| files::scan(bytes, &mapping, proceed)).await
 }
 
 /// Read a measured loop from a file
@@ -149,14 +197,22 @@ pub async fn read_loop_file(
     CheckedQuery(hints): CheckedQuery<LoopFileQuery>,
     body: FileBody,
 ) -> Result<Response, Problem> {
-    answer(body, move |bytes, _| files::measured_loop(bytes, &hints.into())).await
+    let mapping = Mapping::try_from(hints)?;
+    answer(body, move |bytes, proceed| files::measured_loop(bytes, &mapping, proceed)).await
 }
 
 async fn answer<R: Serialize>(
     FileBody { bytes, context }: FileBody,
-    read: impl FnOnce(&[u8], &Deadline) -> Result<R, ImportError> + Send + 'static,
+    read: impl FnOnce(&[u8], &dyn Fn() -> bool) -> Result<R, ImportError> + Send + 'static,
 ) -> Result<Response, Problem> {
     let cost = files::cost(&bytes);
-    let work = move |stop: &Deadline| Ok::<_, Problem>(formats::json(bytes.len(), &read(&bytes, stop)?)?);
+    // Ended when the client hangs up, and at the deadline.
+    let work = move |stop: &Deadline| {
+        let found = read(&bytes, &|| stop.check().is_ok());
+        if found.as_ref().is_err_and(|error| error.is_stopped) {
+            stop.check().map_err(|interrupted| Failure::interrupted(interrupted, ""))?;
+        }
+        Ok::<_, Problem>(formats::json(bytes.len(), &found?)?)
+    };
     Ok(reply::json(context.run(cost, work).await??))
 }

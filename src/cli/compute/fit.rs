@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
+use stickslip_measured::import::Mapping;
 use stickslip_wire::fit::{FitParameter, KnownValue, KnownValues, LoopStart, MeasuredLoop};
 use stickslip_wire::{self as wire, ContactDefinition, FitRequest};
 
@@ -57,8 +58,10 @@ impl FitFlags {
             .contact
             .ok_or_else(|| "a file of columns needs --contact FILE, the definition of the contact".to_owned())?;
         let contact = wire::parse::<ContactDefinition>(&read(&contact)?)?;
-        let hints = self.hints.0.map_err(Refusal::from)?.into();
-        let found = files::measured_loop(content, &hints).map_err(|error| CommandError::of_file(file, error))?;
+        let mapping = Mapping::try_from(self.hints.0.map_err(Refusal::from)?);
+        let mapping = mapping.map_err(|error| CommandError::of_file(file, error))?;
+        let found =
+            files::measured_loop(content, &mapping, &|| true).map_err(|error| CommandError::of_file(file, error))?;
         let normal_force = self.normal_force.or(found.measured.normal_force);
         let measured = MeasuredLoop { normal_force, start: self.start, ..found.measured };
         let mut known = KnownValues::default();

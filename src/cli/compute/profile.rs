@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use stickslip_compute::Refusal;
 use stickslip_compute::computations::files;
+use stickslip_measured::import::Mapping;
 use stickslip_wire::profile_fit::{ScanLoad, ScanOrientation, Smoothing};
 use stickslip_wire::{self as wire, Profile, ProfileFitRequest};
 
@@ -37,8 +38,9 @@ impl Flags for ProfileFlags {
 
 impl ProfileFlags {
     fn of_columns(self, content: &[u8], file: &Path) -> Result<(ProfileFitRequest, Vec<String>), CommandError> {
-        let hints = self.hints.0.map_err(Refusal::from)?.into();
-        let found = files::scan(content, hints).map_err(|error| CommandError::of_file(file, error))?;
+        let mapping = Mapping::try_from(self.hints.0.map_err(Refusal::from)?);
+        let mapping = mapping.map_err(|error| CommandError::of_file(file, error))?;
+        let found = files::scan(content, &mapping, &|| true).map_err(|error| CommandError::of_file(file, error))?;
         let load = |file: PathBuf| Ok::<_, CommandError>(wire::parse::<ScanLoad>(&read(&file)?)?);
         let load = self.load.map(load).transpose()?;
         let request = ProfileFitRequest {

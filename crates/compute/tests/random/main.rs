@@ -24,7 +24,7 @@ use proptest::sample::select;
 use proptest::strategy::ValueTree as _;
 use proptest::test_runner::{TestCaseError, TestError};
 use stickslip_compute::computations::files;
-use stickslip_measured::import::{LoopHints, ScanHints};
+use stickslip_measured::import::Mapping;
 use stickslip_wire::LoopFileReply;
 use stickslip_wire::fit::MeasuredLoop;
 
@@ -183,8 +183,8 @@ fn random_file() -> impl Strategy<Value = Vec<u8>> {
 #[test]
 fn files_of_instruments() {
     let examine = |bytes: &[u8]| {
-        let scan = files::scan(bytes, ScanHints { spacing: Some(1.0), ..ScanHints::default() });
-        let found = files::measured_loop(bytes, &LoopHints::default());
+        let scan = files::scan(bytes, &Mapping::parse("spacing:1").unwrap(), &|| true);
+        let found = files::measured_loop(bytes, &Mapping::default(), &|| true);
         if let Ok(LoopFileReply { measured: MeasuredLoop { displacement, force, time, .. }, preview, .. }) = &found {
             assert_eq!(displacement.len(), force.len());
             assert!(time.as_ref().is_none_or(|time| time.len() == force.len()) && force.len() <= preview.rows);

@@ -1,6 +1,6 @@
 //! Which unit a column has: what is known beside the file, what its header names, or the SI unit.
 
-use super::error::ImportError;
+use super::error::{Candidate, ImportError};
 use super::label::Mention;
 use super::preview::ColumnUnit;
 use super::sheet::Sheet;
@@ -59,7 +59,9 @@ impl Needed {
 
     /// How to name the unit beside the file.
     fn advice(self) -> String {
-        format!("correct the header, or name the unit by `{}`", self.parameter)
+        let entry = self.parameter.trim_end_matches("_unit");
+        let how = if entry == self.parameter { format!("{entry}:UNIT") } else { format!("{entry}:COLUMN:UNIT") };
+        format!("correct the header, or name the unit by `{}` or `mapping={how}`", self.parameter)
     }
 
     /// Whether a column has a unit of something else.
@@ -103,12 +105,29 @@ impl Needed {
         column: usize,
         hint: Option<&UnitHint>,
     ) -> Result<ColumnUnit, ImportError> {
+        let line = sheet.head.unit_lines[column];
+        let other = sheet.head.unused_units.iter().find(|(_, at, _)| *at == column);
+        if let (None, Some((line, _, text)), Mention::Known(_, used)) = (hint, other, &sheet.labels[column].unit) {
+            let quantity = self.parameter.trim_end_matches("_unit");
+            let candidate = |unit: &str| Candidate {
+                quantity: self.parameter,
+                column: Some(column + 1),
+                name: unit.to_owned(),
+                values: sheet.first_values(column),
+                mapping: format!("{quantity}:{}:{unit}", column + 1),
+            };
+            let fault = format!(
+                "`{text}` is a unit that was not used (unused_unit): the column is in `{used}` by another line of the head"
+            );
+            let candidates = vec![candidate(used), candidate(text)];
+            return Err(ImportError { candidates, ..ImportError::at(*line, column + 1, fault) });
+        }
         match &sheet.labels[column].unit {
-            Mention::Known(_, text) if hint.is_none() => self.named(text, sheet.line_of_unit(column), Some(column + 1)),
+            Mention::Known(_, text) if hint.is_none() => self.named(text, line, Some(column + 1)),
             // The text may be a unit elsewhere: `m` behind a blank where a sign was lost.
             Mention::Unknown(text) if hint.is_none() => {
                 let unknown = UnknownUnit { text: text.clone(), expected: self.dimension, found: None };
-                Err(ImportError::unit(sheet.line_of_unit(column), Some(column + 1), unknown, &self.advice()))
+                Err(ImportError::unit(line, Some(column + 1), unknown, &self.advice()))
             }
             _ => Ok(self.beside(hint)),
         }

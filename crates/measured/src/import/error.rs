@@ -5,7 +5,7 @@ use std::fmt;
 use super::units::UnknownUnit;
 
 /// What is wrong with a file, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ImportError {
     /// The line (the row of a spreadsheet), from 1 on, if one is at fault.
     pub line: Option<usize>,
@@ -15,11 +15,30 @@ pub struct ImportError {
     pub fault: String,
     /// The text that was taken for a unit and is not a unit of the quantity needed, if that is the fault.
     pub unknown_unit: Option<String>,
+    /// What the file may mean, where that is the fault: each with the mapping that chooses it.
+    pub candidates: Vec<Candidate>,
+    /// Whether the work was ended from outside.
+    pub is_stopped: bool,
+}
+
+/// One of several things that a file may mean.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Candidate {
+    /// What would be chosen: `load`, `displacement`, `table`, ...
+    pub quantity: &'static str,
+    /// The number of its column, from 1 on, if it is one.
+    pub column: Option<usize>,
+    /// Its name in the file.
+    pub name: String,
+    /// Its first values, as the file has them.
+    pub values: Vec<String>,
+    /// The mapping with which this one is read.
+    pub mapping: String,
 }
 
 impl ImportError {
     pub(super) fn of_file(fault: impl Into<String>) -> ImportError {
-        ImportError { line: None, column: None, fault: fault.into(), unknown_unit: None }
+        ImportError { fault: fault.into(), ..ImportError::default() }
     }
 
     pub(super) fn at_line(line: usize, fault: impl Into<String>) -> ImportError {
@@ -33,7 +52,17 @@ impl ImportError {
     /// A unit that is named and not known; `advice` says how to name it beside the file.
     pub(super) fn unit(line: Option<usize>, column: Option<usize>, unknown: UnknownUnit, advice: &str) -> ImportError {
         let fault = format!("{unknown}: {advice}");
-        ImportError { line, column, fault, unknown_unit: Some(unknown.text) }
+        ImportError { line, column, unknown_unit: Some(unknown.text), ..ImportError::of_file(fault) }
+    }
+
+    /// Several things that the file may mean.
+    pub(super) fn ambiguous(fault: impl Into<String>, candidates: Vec<Candidate>) -> ImportError {
+        ImportError { candidates, ..ImportError::of_file(fault) }
+    }
+
+    /// The work was ended by a client that left, or by its time limit.
+    pub(super) fn stopped() -> ImportError {
+        ImportError { is_stopped: true, ..ImportError::of_file("stopped") }
     }
 }
 

@@ -1,10 +1,13 @@
-//! Grids of heights with a header of their own: ISO 25178-71 (`.sdf`), ESRI (`.asc`) and Surfer (`.grd`) as text.
+//! Heights with a header of their own, as text: grids of ISO 25178-71 (`.sdf`), of ESRI (`.asc`) and of Surfer (`.grd`),
+//! and profiles of ISO 5436-2 (`.smd`).
 
 use super::error::ImportError;
 use super::lines::lines;
+use super::matrix::thinned;
 use super::number::{Mark, is_missing, is_no_value, number};
 use super::preview::Preview;
-use super::scan::{HEIGHT, LATERAL, Places, ScanFile, ScanHints, thinned};
+use super::scan::{HEIGHT, LATERAL, Places, ScanFile, Wanted, say_missing};
+use super::sheet::LineKind;
 use super::source::Source;
 use super::units::Length;
 
@@ -30,15 +33,17 @@ struct Header {
 }
 
 /// Reads a grid; none if the first line does not begin one.
-pub(super) fn read(source: &Source, hints: &ScanHints) -> Option<Result<ScanFile, ImportError>> {
+pub(super) fn read(source: &Source<'_>, wanted: &Wanted<'_>) -> Option<Result<ScanFile, ImportError>> {
     let text = source.text.trim_start_matches('\u{feff}');
     let header = match text.split_whitespace().next()?.to_lowercase().as_str() {
-        "aiso-1.0" => iso(text),
+        // The first format by that name, and its successor.
+        "aiso-1.0" | "aiso-2.0" | "abcr-1.0" | "abcr-2.0" => iso(text),
+        "iso" if text.contains("\nCX ") && text.contains("\nCZ ") => return Some(profile(source, text, wanted)),
         "dsaa" => surfer(text),
         "ncols" => esri(text),
         _ => return None,
     };
-    Some(header.and_then(|header| grid(source, text, &header, hints)))
+    Some(header.and_then(|header| grid(source, text, &header, wanted)))
 }
 
 /// The value behind a name in the header, with its line.
@@ -125,16 +130,111 @@ fn surfer(text: &str) -> Result<Header, ImportError> {
     }
 }
 
-fn grid(source: &Source, text: &str, header: &Header, hints: &ScanHints) -> Result<ScanFile, ImportError> {
+/// ISO 5436-2: records that end with `EOR`, of which the first has the axes, and the third the heights.
+fn profile(source: &Source<'_>, text: &str, wanted: &Wanted<'_>) -> Result<ScanFile, ImportError> {
+    let all: Vec<(usize, &str)> = lines(text).map(|(line, text)| (line, text.trim())).collect();
+    let ends: Vec<usize> = (0..all.len()).filter(|index| all[*index].1.eq_ignore_ascii_case("EOR")).collect();
+    let [_, second, third, ..] = ends[..] else {
+        return Err(ImportError::of_file("the records of this profile are not closed by `EOR`"));
+    };
+    // Of an axis: whether its values are there (`A`) or counted (`I`), how many, their unit, and the size of a step.
+    let axis = |name: &str| {
+        let words = |(line, text): &(usize, &str)| {
+            let words: Vec<String> = text.split_whitespace().map(str::to_owned).collect();
+            (words.first().map(String::as_str) == Some(name)).then_some((*line, words))
+        };
+        let missing = || ImportError::of_file(format!("the header has no `{name}`"));
+        let (line, words) = all.iter().find_map(words).ok_or_else(missing)?;
+        let step = words.get(4).and_then(|step| number(step, Mark::Point)).filter(|step| *step > 0.0);
+        let fault = || ImportError::at_line(line, format!("does not say the axis as `{name} A 25 nm 1.0E-2`"));
+        let (kind, count) =
+            words.get(1).zip(words.get(2).and_then(|count| count.parse::<usize>().ok())).ok_or_else(fault)?;
+        Ok::<_, ImportError>((
+            kind.clone(),
+            count,
+            words.get(3).cloned().ok_or_else(fault)?,
+            step.ok_or_else(fault)?,
+            line,
+        ))
+    };
+    let (kind, _, x_unit, dx, x_line) = axis("CX")?;
+    let (_, count, z_unit, dz, z_line) = axis("CZ")?;
+    if kind != "I" {
+        return Err(ImportError::at_line(x_line, "has places of its own, which are not read: export x and z as CSV"));
+    }
+    let unit = |needed: super::columns::Needed, said: &str, text: &str, line: usize| match wanted.mapping.unit(said) {
+        hint @ Some(_) => Ok(needed.beside(hint)),
+        None => needed.named(text, Some(line), None),
+    };
+    let (x_unit, z_unit) = (unit(LATERAL, "lateral", &x_unit, x_line)?, unit(HEIGHT, "height", &z_unit, z_line)?);
+    let (lateral, height) = (Length::nearest(x_unit.unit), Length::nearest(z_unit.unit));
+    let mut z = Vec::new();
+    for (line, text) in &all[second + 1..third] {
+        let value = number(text, Mark::Point).filter(|value| !is_no_value(*value));
+        if value.is_none() && !is_missing(text) {
+            return Err(ImportError::at_line(*line, format!("`{text:.40}` is not a number")));
+        }
+        z.push(value.map(|value| z_unit.unit.convert(dz * value, height.unit())));
+    }
+    if z.len() != count {
+        return Err(ImportError::at_line(z_line, format!("says {count} heights, and {} follow", z.len())));
+    }
+    let stride = if wanted.most == 0 { 1 } else { count.div_ceil(wanted.most).max(1) };
+    let x = (0..count).step_by(stride).map(|index| x_unit.unit.convert(dx * index as f64, lateral.unit())).collect();
+    let z: Vec<Option<f64>> = z.into_iter().step_by(stride).collect();
+    let mut preview = described(source, text, &all, all[second].0, all[third].0, wanted);
+    preview.thinned = stride;
+    preview.reading.push(format!("{}, ISO 5436-2: a profile of {count} heights.", source.encoding));
+    preview.reading.push(format!("Places are {dx} {} apart, and heights counts of {dz} {}.", x_unit.text, z_unit.text));
+    say_missing(z.iter().filter(|height| height.is_none()).count(), &mut preview);
+    Ok(ScanFile { places: Places::Line { x, z }, lateral, height, preview })
+}
+
+/// A preview in which the lines up to one are header, and those from another on a trailer.
+fn described(
+    source: &Source<'_>,
+    text: &str,
+    all: &[(usize, &str)],
+    header: usize,
+    trailer: usize,
+    wanted: &Wanted<'_>,
+) -> Preview {
+    let filled = || all.iter().filter(|(_, text)| !text.trim().is_empty()).map(|(line, _)| *line);
+    let mut preview = Preview {
+        encoding: source.encoding.clone(),
+        separator: "white_space".to_owned(),
+        rows: filled().filter(|line| *line > header && *line < trailer).count(),
+        header: lines(text).take(header.min(SHOWN)).map(|(_, line)| line.trim().chars().take(200).collect()).collect(),
+        rows_left_out: filled().filter(|line| *line <= header || *line >= trailer).collect(),
+        thinned: 1,
+        mapping: wanted.mapping.entries().join(";"),
+        ..Preview::default()
+    };
+    let is_of = |kind: LineKind, line: usize| match kind {
+        LineKind::Preamble => line <= header,
+        LineKind::Data => line > header && line < trailer,
+        _ => line >= trailer,
+    };
+    for kind in [LineKind::Preamble, LineKind::Remark, LineKind::Data] {
+        let count = filled().filter(|line| is_of(kind, *line)).count();
+        preview.lines.extend(filled().find(|line| is_of(kind, *line)).map(|first| (kind, count, first)));
+    }
+    preview
+}
+
+fn grid(source: &Source<'_>, text: &str, header: &Header, wanted: &Wanted<'_>) -> Result<ScanFile, ImportError> {
+    let mapping = wanted.mapping;
     let Header { name, is_metric, columns, rows, dx, dy, scale, fill, lines: header_lines } = *header;
     let mut heights: Vec<Option<f64>> = Vec::new();
-    let mut closing = Vec::new();
+    let mut trailer = usize::MAX;
     for (line, text) in lines(text).skip_while(|(line, _)| *line <= header_lines) {
+        // What follows the heights behind an asterisk is a trailer.
+        if text.trim() == "*" && is_metric {
+            trailer = line;
+            break;
+        }
+        (wanted.proceed)().then_some(()).ok_or_else(ImportError::stopped)?;
         for (column, word) in text.split_whitespace().enumerate() {
-            if word == "*" {
-                closing.push(line);
-                continue;
-            }
             let height = number(word, Mark::Point).filter(|height| !is_no_value(*height));
             if height.is_none() && number(word, Mark::Point).is_none() && !is_missing(word) {
                 return Err(ImportError::at(line, column + 1, format!("`{word:.40}` is not a number")));
@@ -148,28 +248,16 @@ fn grid(source: &Source, text: &str, header: &Header, hints: &ScanHints) -> Resu
             "the header has {columns} x {rows} heights, and {found} follow: the file is not complete"
         )));
     }
-    let (lateral_unit, unit) = (LATERAL.beside(hints.lateral.as_ref()), HEIGHT.beside(hints.height.as_ref()));
+    let (lateral_unit, unit) = (LATERAL.beside(mapping.unit("lateral")), HEIGHT.beside(mapping.unit("height")));
     let (mut lateral, mut height) = (Length::nearest(lateral_unit.unit), Length::nearest(unit.unit));
     if is_metric {
         lateral = if lateral_unit.is_assumed { Length::Micrometre } else { lateral };
         height = if unit.is_assumed { Length::Nanometre } else { height };
     }
-    let mut preview = Preview {
-        encoding: source.encoding.clone(),
-        separator: "white_space",
-        rows,
-        header: lines(text)
-            .take(header_lines.min(SHOWN))
-            .map(|(_, line)| line.trim().chars().take(200).collect())
-            .collect(),
-        rows_left_out: (1..=header_lines).chain(closing).collect(),
-        thinned: 1,
-        ..Preview::default()
-    };
-    let (dx, dy) = match hints.spacing {
-        Some(spacing) => (spacing, spacing),
-        None => (dx, dy),
-    };
+    let all: Vec<(usize, &str)> = lines(text).collect();
+    let mut preview = described(source, text, &all, header_lines, trailer, wanted);
+    preview.rows = rows;
+    let (dx, dy) = mapping.spacing.map_or((dx, dy), |[dx, dy]| (dx, dy));
     let assumed = |is_assumed: bool| {
         if is_assumed && !is_metric { ", because nothing names another unit" } else { "" }
     };
@@ -186,7 +274,7 @@ fn grid(source: &Source, text: &str, header: &Header, hints: &ScanHints) -> Resu
     let of = if is_metric { "counts of" } else { "in units of" };
     preview.reading.push(format!("Heights are {of} {count} {}{}.", height.symbol(), assumed(unit.is_assumed)));
     let value = |row: usize, column: usize| heights[row * columns + column].map(|value| count * value);
-    let z = thinned(rows, columns, hints.most, value, &mut preview);
+    let z = thinned(rows, columns, wanted.most, value, &mut preview);
     let stride = preview.thinned as f64;
     Ok(ScanFile { places: Places::Map { dx: stride * step(dx), dy: stride * step(dy), z }, lateral, height, preview })
 }

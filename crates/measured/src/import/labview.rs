@@ -23,8 +23,8 @@ pub(super) fn describe(sheet: &mut Sheet<'_>) -> Option<Clock> {
     let mut cells = Vec::new();
     let mut fields = |key: &str| {
         let line = sheet.header.iter().rev().find(|(_, line)| line.starts_with(key)).map(|(_, line)| *line)?;
-        Separator::Tab.split(line, &mut cells);
-        (cells.len() < 2).then(|| Separator::Comma.split(line, &mut cells));
+        Separator::TAB.split(line, &mut cells);
+        (cells.len() < 2).then(|| Separator::COMMA.split(line, &mut cells));
         Some(cells.iter().map(|cell| (*cell).to_owned()).collect::<Vec<String>>())
     };
     let (units, dimensions) = (fields("Y_Unit_Label"), fields("X_Dimension"));

@@ -6,50 +6,77 @@ const LONGEST_CELL: [usize; 2] = [4, 2000];
 /// What separates the columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
-    Semicolon,
-    Tab,
-    Comma,
+    /// A character, which quotes keep.
+    Sign(u8),
+    /// Any number of blanks.
     WhiteSpace,
 }
 
+/// Separators that have a name, and what they are in a sentence.
+const NAMED: [(Separator, &str, &str); 5] = [
+    (Separator::Sign(b';'), "semicolon", "semicolons"),
+    (Separator::Sign(b'\t'), "tab", "tabulators"),
+    (Separator::Sign(b'|'), "pipe", "vertical bars"),
+    (Separator::Sign(b','), "comma", "commas"),
+    (Separator::WhiteSpace, "white_space", "white space"),
+];
+/// Other signs that may separate, each by itself as its name.
+const OTHERS: &[u8] = b"&!~^#:/*$@%_=\\\x1f\x1e";
+
 impl Separator {
-    /// All of them, the most certain first.
-    pub(super) const ALL: [Separator; 4] =
-        [Separator::Semicolon, Separator::Tab, Separator::Comma, Separator::WhiteSpace];
+    pub(super) const TAB: Separator = Separator::Sign(b'\t');
+    pub(super) const COMMA: Separator = Separator::Sign(b',');
+
+    /// All of them that a text may have, the most certain first.
+    pub(super) fn all() -> impl Iterator<Item = Separator> + Clone {
+        let others = OTHERS.iter().map(|sign| Separator::Sign(*sign));
+        Separator::usual().chain(others)
+    }
+
+    /// Those that are usual.
+    pub(super) fn usual() -> impl Iterator<Item = Separator> + Clone {
+        NAMED.iter().map(|(one, ..)| *one)
+    }
+
+    /// The separator of this name, or of this sign.
+    pub(super) fn parse(text: &str) -> Option<Separator> {
+        let named = NAMED.iter().find(|(_, name, _)| *name == text).map(|(one, ..)| *one);
+        let sign = || {
+            Some(text.as_bytes()[0]).filter(|sign| text.len() == 1 && (OTHERS.contains(sign) || b"|,;".contains(sign)))
+        };
+        let named = named.or_else(|| (text == "colon").then_some(Separator::Sign(b':')));
+        named.or_else(|| sign().map(Separator::Sign))
+    }
 
     /// Its name in a reply.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Separator::Semicolon => "semicolon",
-            Separator::Tab => "tab",
-            Separator::Comma => "comma",
-            Separator::WhiteSpace => "white_space",
-        }
+    pub(super) fn name(self) -> String {
+        let named = NAMED.iter().find(|(one, ..)| *one == self).map(|(_, name, _)| (*name).to_owned());
+        named.unwrap_or_else(|| {
+            self.sign().map_or_else(String::new, |sign| {
+                if sign == b':' { "colon".to_owned() } else { char::from(sign).to_string() }
+            })
+        })
     }
 
     /// Its name in a sentence.
-    pub(super) fn plural(self) -> &'static str {
-        match self {
-            Separator::Semicolon => "semicolons",
-            Separator::Tab => "tabulators",
-            Separator::Comma => "commas",
-            Separator::WhiteSpace => "white space",
-        }
+    pub(super) fn plural(self) -> String {
+        let named = NAMED.iter().find(|(one, ..)| *one == self).map(|(.., plural)| (*plural).to_owned());
+        named.unwrap_or_else(|| format!("`{}`", self.name()))
     }
 
-    fn byte(self) -> Option<u8> {
-        match self {
-            Separator::Semicolon => Some(b';'),
-            Separator::Tab => Some(b'\t'),
-            Separator::Comma => Some(b','),
-            Separator::WhiteSpace => None,
-        }
+    fn sign(self) -> Option<u8> {
+        if let Separator::Sign(sign) = self { Some(sign) } else { None }
+    }
+
+    /// Whether blanks may separate thousands within a cell.
+    pub(super) fn keeps_blanks(self) -> bool {
+        self != Separator::WhiteSpace && self != Separator::COMMA
     }
 
     /// The cells of a line, in quotes if they are so; quotes keep separators.
     pub(super) fn split<'a>(self, line: &'a str, cells: &mut Vec<&'a str>) {
         cells.clear();
-        let Some(separator) = self.byte() else {
+        let Some(separator) = self.sign() else {
             words(line, cells);
             return;
         };
@@ -67,8 +94,10 @@ impl Separator {
 
 /// The index behind the quote that closes a cell which begins here with one, if that ends the cell.
 fn closing_quote(bytes: &[u8], start: usize, separator: u8) -> Option<usize> {
-    let open = start + bytes[start..].iter().position(|byte| *byte != b' ')?;
-    if bytes[open] != b'"' {
+    let mut open = start + bytes[start..].iter().position(|byte| *byte != b' ')?;
+    // A number as the formula of a text, `="0,30"`.
+    open += usize::from(bytes[open] == b'=');
+    if bytes.get(open) != Some(&b'"') {
         return None;
     }
     let mut close = open + 1;
@@ -160,10 +189,10 @@ mod tests {
             separator.split(line, &mut cells);
             cells
         };
-        assert_eq!(of(Separator::Comma, "-60,\"-225,0\""), ["-60", "\"-225,0\""]);
-        assert_eq!(of(Separator::Comma, "1,, \"a \"\"b\"\",c\" ,"), ["1", "", "\"a \"\"b\"\",c\"", ""]);
-        assert_eq!(of(Separator::Semicolon, "5\" x;\"6;7"), ["5\" x", "\"6", "7"]);
+        assert_eq!(of(Separator::COMMA, "-60,\"-225,0\""), ["-60", "\"-225,0\""]);
+        assert_eq!(of(Separator::COMMA, "1,, \"a \"\"b\"\",c\" ,"), ["1", "", "\"a \"\"b\"\",c\"", ""]);
+        assert_eq!(of(Separator::Sign(b';'), "5\" x;\"6;7"), ["5\" x", "\"6", "7"]);
         assert_eq!(of(Separator::WhiteSpace, "  1.5\tNo Data  \"x (um)\" 3"), ["1.5", "No Data", "\"x (um)\"", "3"]);
-        assert_eq!(of(Separator::Tab, "a\t\tb\t"), ["a", "", "b", ""]);
+        assert_eq!(of(Separator::TAB, "a\t\tb\t"), ["a", "", "b", ""]);
     }
 }

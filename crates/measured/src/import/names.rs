@@ -1,4 +1,5 @@
-//! What the name of a column means: the words of instruments and laboratories, in English and German.
+//! What the name of a column means: the words of instruments and laboratories, in English and German, with
+//! the plainest of other languages.
 
 /// What a column holds, by its name. A rank orders names that fit less and less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +57,66 @@ struct Words {
     words: Vec<String>,
 }
 
+/// Letters with marks, and those without that stand for them.
+const FOLDED: [(&str, &str); 14] = [
+    ("àáâãåąÀÁÂÃÅĄ", "a"),
+    ("çćčÇĆČ", "c"),
+    ("èéêëęěÈÉÊËĘĚ", "e"),
+    ("ìíîïıİÌÍÎÏ", "i"),
+    ("ñńňÑŃŇ", "n"),
+    ("òóôõøÒÓÔÕØ", "o"),
+    ("ùúûůÙÚÛŮ", "u"),
+    ("śšşŚŠŞ", "s"),
+    ("źżžŹŻŽ", "z"),
+    ("łŁ", "l"),
+    ("ýÝ", "y"),
+    ("řŘ", "r"),
+    ("ğĞ", "g"),
+    ("ťŤ", "t"),
+];
+
+/// Names of other languages: French, Spanish, Italian, Portuguese, Dutch, Polish, Czech, Swedish, Turkish, Russian,
+/// Chinese, Japanese and Korean. What is normal or tangential comes before what is a force.
+const ELSEWHERE: [(Meaning, &str); 10] = [
+    (
+        Meaning::Coefficient,
+        "coefficiente coeficiente coefficientd wspolczynnik soucinitel coefficientde frictionskoef katsayi коэффициент \
+         摩擦系数 摩擦係数 摩擦因数 마찰계수",
+    ),
+    (
+        Meaning::Rate,
+        "vitesse velocidad velocita velocidade snelheid predkosc rychlost hastighet скорость 速度 频率 周波数 속도",
+    ),
+    (Meaning::Other, "temperatura température температура 温度 온도"),
+    (
+        Meaning::Load,
+        "forcenormale fuerzanormal forzanormale forcanormal normaalkracht silanormalna normalovasila normalkraft normalkuvvet \
+         carganormal caricon charge carga carico belasting obciazenie zatizeni нормальнаясила нормальнаянагрузка нагрузка \
+         法向力 法向载荷 正压力 载荷 垂直荷重 垂直力 法線力 荷重 수직력 수직하중 하중",
+    ),
+    (
+        Meaning::Force(1),
+        "forcetangentielle forcedefrottement fuerzatangencial fuerzadefriccion fuerzaderozamiento forzatangenziale \
+         forzadattrito forzadiattrito forcatangencial forcadeatrito wrijvingskracht tangentielekracht silatarcia \
+         silastyczna trecisila tecnasila friktionskraft surtunmekuvveti силатрения тангенциальнаясила 摩擦力 切向力 \
+         剪切力 接線力 せん断力 마찰력 접선력",
+    ),
+    (Meaning::Force(3), "fuerza forza forca kracht sila kuvvet сила 力"),
+    (Meaning::Time, "temps tiempo tempo tijd czas cas zaman время 时间 時間 时刻 時刻 시간"),
+    (Meaning::Depth, "profondeur profundidad profondita diepte глубина износ 深度 磨损 摩耗 깊이"),
+    (
+        Meaning::Displacement(1),
+        "deplacement desplazamiento spostamento deslocamento verplaatsing przemieszczenie posunuti posuv forskjutning \
+         yerdegistirme перемещение смещение 位移 変位 변위",
+    ),
+    (
+        Meaning::Displacement(2),
+        "posicion posizione posicao positie pozycja poloha konum положение позиция координата 位置 위치",
+    ),
+];
+/// Whole words of them, where a part of a word says nothing.
+const SHORT: [&str; 7] = ["cas", "sila", "charge", "temps", "tempo", "czas", "carga"];
+
 impl Words {
     fn of(name: &str) -> Words {
         let mut plain = String::new();
@@ -71,6 +132,10 @@ impl Words {
                 'ü' | 'Ü' => plain.push_str("ue"),
                 'ß' => plain.push_str("ss"),
                 '\u{b5}' | 'μ' => plain.push_str("mu"),
+                _ if FOLDED.iter().any(|(marked, _)| marked.contains(letter)) => {
+                    let folded = FOLDED.iter().find(|(marked, _)| marked.contains(letter));
+                    plain.push_str(folded.map_or("", |(_, letter)| letter));
+                }
                 _ if letter.is_alphanumeric() => plain.extend(letter.to_lowercase()),
                 _ => plain.push(' '),
             }
@@ -81,7 +146,8 @@ impl Words {
 
     /// Whether it has one of these words.
     fn has(&self, words: &str) -> bool {
-        words.split(' ').any(|word| self.words.iter().any(|own| own == word))
+        let bare = |own: &str| own.trim_end_matches(|letter: char| letter.is_ascii_digit()).to_owned();
+        words.split(' ').any(|word| self.words.iter().any(|own| own == word || word.len() > 1 && bare(own) == word))
     }
 
     /// Whether one of these stands anywhere in it.
@@ -102,6 +168,13 @@ pub(super) fn meaning(name: &str) -> Meaning {
     let has = |list: &str| words.has(list);
     let contains = |list: &str| words.contains(list);
     let along = contains("displacement verschieb auslenkung position weg") || has("disp pos");
+    let elsewhere = || {
+        let is_in = |names: &&str| {
+            let stands = |name: &str| if SHORT.contains(&name) { words.has(name) } else { words.joined.contains(name) };
+            names.split_whitespace().any(stands)
+        };
+        ELSEWHERE.iter().find(|(_, names)| is_in(&names)).map(|(meaning, _)| *meaning)
+    };
     if is_index(&words) {
         Meaning::Index
     } else if contains("coefficient koeffizient coeff reibwert reibungszahl reibzahl beiwert verhaeltnis faktor")
@@ -128,17 +201,22 @@ pub(super) fn meaning(name: &str) -> Meaning {
     ) || has("temp strom flag label film")
     {
         Meaning::Other
-    } else if contains("timestamp zeit datetime uhrzeit") || has("time t date datum elapsed clock") {
+    } else if contains("timestamp zeit datetime datenum uhrzeit fechayhora")
+        || has("time t date datum elapsed clock fecha hora heure")
+    {
         Meaning::Time
     } else if contains("depth penetration wear tiefe verschlei eindring indentation")
         || along && has("normal vertical z axial height")
         || words.is("z uz dz h")
     {
         Meaning::Depth
+    } else if contains("tangentialload frictionload shearload lateralload") {
+        Meaning::Force(1)
     } else if contains(
         "normalforce normalload normalkraft normallast appliedload anpress auflast prueflast pruefkraft druckkraft \
          belastung axialforce axialload axialkraft verticalforce contactload contactforce preload vorlast deadweight",
-    ) || has("normal load last fz fn nf")
+    ) || has("normal load last fz fn nf weight gewicht poids peso")
+        || has("mass masse") && !contains("loss verlust")
         || words.joined.starts_with("forcez")
         || has("force kraft f") && has("z n normal vertical axial")
         || words.is("p")
@@ -154,6 +232,8 @@ pub(super) fn meaning(name: &str) -> Meaning {
         Meaning::Force(2)
     } else if has("fy") || has("force kraft f") && has("y") {
         Meaning::Force(4)
+    } else if let Some(meaning @ (Meaning::Load | Meaning::Force(1))) = elsewhere() {
+        meaning
     } else if contains("force kraft") || has("f loadcell") {
         Meaning::Force(3)
     } else if contains("friction reibung") {
@@ -173,7 +253,7 @@ pub(super) fn meaning(name: &str) -> Meaning {
     } else if contains("stroke deflection lvdt encoder extension travel wegsensor wegaufnehmer") || has("hub") {
         Meaning::Displacement(4)
     } else {
-        Meaning::Unknown
+        elsewhere().unwrap_or(Meaning::Unknown)
     }
 }
 
@@ -217,7 +297,7 @@ pub(super) fn axis(name: &str) -> Axis {
     }
     let is_height = words.contains(
         "height hoehe profil topogra elevation depth tiefe filtered gefiltert rauheit roughness waviness welligkeit \
-         surface",
+         surface hauteur altura altezza hoogte wysokosc vyska высота 高度 高さ 높이",
     ) || words.has("z raw roh deviation abweichung deflection");
     if words.has("y") {
         Axis::Y

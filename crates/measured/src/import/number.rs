@@ -1,5 +1,7 @@
 //! Numbers as instruments, spreadsheets and Fortran write them, and what stands where one is missing.
 
+use super::mapping::amount;
+
 /// From here on a number is the code of an instrument for no value: 9.91e37 of IEEE 488.2, 1.70141e38 of Surfer.
 const NO_VALUE: f64 = 9.9e37;
 /// Marks of a missing number, in lower case and without a sign.
@@ -70,10 +72,79 @@ pub(super) struct Shape {
     is_grouped: bool,
 }
 
-/// A cell without its quotes.
+/// A cell without its quotes, nor what makes a spreadsheet keep it as text (`="0.30"`, `'0.30`).
 pub(super) fn unquoted(cell: &str) -> &str {
     let cell = cell.trim();
-    cell.strip_prefix('"').and_then(|inner| inner.strip_suffix('"')).unwrap_or(cell).trim()
+    let bare = cell.strip_prefix('"').and_then(|inner| inner.strip_suffix('"')).unwrap_or(cell).trim();
+    match bare.strip_prefix("=\"") {
+        Some(formula) if formula.ends_with('"') => formula.trim_matches('"').trim(),
+        _ => bare
+            .strip_prefix('\'')
+            .filter(|rest| rest.starts_with(|first: char| first.is_ascii_digit() || first == '-'))
+            .unwrap_or(bare),
+    }
+}
+
+/// What a cell of a table is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    Missing,
+    /// A number, however its marks are read.
+    Number(f64),
+    /// A number whose mark may separate thousands or decimals.
+    Either,
+    /// A number with its unit.
+    Amount,
+    Text,
+}
+
+fn is_mark_or_digit(byte: u8) -> bool {
+    byte.is_ascii_digit() || matches!(byte, b'.' | b',' | b'-' | b'+')
+}
+
+/// What a cell is; blanks may separate thousands where they separate no columns.
+pub(super) fn kind(cell: &str, keeps_blanks: bool) -> Kind {
+    let bare = unquoted(cell);
+    let first = bare.as_bytes().first().copied().unwrap_or(b' ');
+    let begins = first.is_ascii_digit() || matches!(first, b'-' | b'+' | b'.' | b',' | 0xe2);
+    if !begins {
+        return if is_missing(bare) { Kind::Missing } else { Kind::Text };
+    }
+    let known = |value: f64| if is_no_value(value) { Kind::Missing } else { Kind::Number(value) };
+    let bytes = bare.as_bytes();
+    let point = bytes.iter().position(|byte| *byte == b'.');
+    let is_plain = bytes.iter().all(|byte| matches!(byte, b'0'..=b'9' | b'.' | b'-' | b'+' | b'e' | b'E'));
+    // Three digits behind the only point may be thousands; any other number is certain.
+    if is_plain
+        && point.is_none_or(|point| bytes.len() - point != 4 || bytes.len() > 8)
+        && let Ok(value) = bare.parse::<f64>()
+    {
+        return known(value);
+    }
+    let has_blanks = bare.contains(' ');
+    if has_blanks && !keeps_blanks {
+        return if amount(bare).is_some() { Kind::Amount } else { Kind::Text };
+    }
+    match shape(bare) {
+        Some(shape) if shape.points + shape.commas == 1 && shape.is_grouped && bare.bytes().all(is_mark_or_digit) => {
+            Kind::Either
+        }
+        Some(shape) => {
+            let mark = if shape.last == Some(',') && (shape.points > 0 || shape.commas == 1)
+                || shape.last == Some('.') && shape.points > 1
+            {
+                Mark::Comma
+            } else {
+                Mark::Point
+            };
+            convert(bare, mark, shape)
+                .or_else(|| convert(bare, if mark == Mark::Comma { Mark::Point } else { Mark::Comma }, shape))
+                .map_or(Kind::Text, known)
+        }
+        None if is_missing(bare) => Kind::Missing,
+        None if amount(bare).is_some() => Kind::Amount,
+        None => Kind::Text,
+    }
 }
 
 /// Whether a cell says that its number is missing.
@@ -111,7 +182,7 @@ pub(super) fn shape(cell: &str) -> Option<Shape> {
             }
             '.' => shape.points += 1,
             ',' => shape.commas += 1,
-            '\'' | '\u{2019}' | '\u{a0}' | '\u{202f}' | '\u{2009}' => {}
+            ' ' | '\'' | '\u{2019}' | '\u{a0}' | '\u{202f}' | '\u{2009}' => {}
             _ => return None,
         }
         shape.is_grouped &= if groups == 0 { (1..=3).contains(&run) && !body.starts_with('0') } else { run == 3 };

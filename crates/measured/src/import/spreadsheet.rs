@@ -2,6 +2,7 @@
 //!
 //! What a file unpacks to is counted before it is read, so that its memory is bounded by its length.
 
+use std::borrow::Cow;
 use std::io::{BufReader, Cursor, Read as _, sink};
 use std::panic::catch_unwind;
 
@@ -11,7 +12,6 @@ use zip::ZipArchive;
 
 use super::error::ImportError;
 use super::kinds;
-use super::sheet::Sheet;
 use super::source::Source;
 
 /// Longest spreadsheet that is read.
@@ -22,6 +22,8 @@ const UNPACKED: u64 = 60;
 const AS_TEXT: usize = 2;
 /// What is allowed however short the file is: bytes, cells.
 const ALLOWANCE: usize = 16 << 10;
+/// Columns and rows for which one may stand in a sheet of OpenDocument: those of the largest sheets.
+const MOST_REPEATED: [usize; 2] = [16_384, 1_048_576];
 /// Columns of a sheet.
 const MOST_COLUMNS: usize = 2048;
 /// Where sheets are in the two formats, and texts that cells share.
@@ -31,8 +33,8 @@ const SHARED: &str = "xl/sharedStrings.xml";
 
 type Archive<'a> = ZipArchive<Cursor<&'a [u8]>>;
 
-/// The sheet of this name or number, or the first with rows of numbers.
-pub(super) fn read(bytes: &[u8], wanted: Option<&str>) -> Result<Source, ImportError> {
+/// The sheets, or the one of this name or number.
+pub(super) fn read<'a>(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Source<'a>>, ImportError> {
     let damaged = || ImportError::of_file("this zip archive is damaged: copy the file again");
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|_| damaged())?;
     let names: Vec<String> = archive.file_names().flatten().map(|name| name.into_owned()).collect();
@@ -49,21 +51,23 @@ pub(super) fn read(bytes: &[u8], wanted: Option<&str>) -> Result<Source, ImportE
     // The library is not written for hostile files: what it does not expect there is a damaged file.
     let sheets = catch_unwind(|| if kind == "xlsx" { of_xlsx(bytes) } else { of_ods(bytes) });
     let sheets = sheets.unwrap_or_else(|_| Err(damaged()))?;
-    let chosen = match wanted {
-        Some(wanted) => {
-            let by_name = sheets.iter().position(|(name, _)| name == wanted);
-            let by_number = || wanted.parse::<usize>().ok()?.checked_sub(1).filter(|index| *index < sheets.len());
-            by_name.or_else(by_number).ok_or_else(|| {
-                let names: Vec<&str> = sheets.iter().map(|(name, _)| name.as_str()).take(20).collect();
-                ImportError::of_file(format!("there is no sheet `{wanted:.40}` among {}", names.join(", ")))
-            })?
-        }
-        None => sheets.iter().position(|(_, text)| Sheet::parse(text).is_ok()).unwrap_or(0),
-    };
     let count = sheets.len();
-    let (name, text) = sheets.into_iter().nth(chosen).ok_or_else(|| ImportError::of_file("there are no sheets"))?;
-    let remark = format!("Sheet `{name}`, {} of {count}: choose another one by `sheet`.", chosen + 1);
-    Ok(Source { text, encoding: kind.to_owned(), remark: (count > 1).then_some(remark) })
+    let mut sources: Vec<Source<'a>> = Vec::new();
+    for (index, (name, text, has_bare_formulas)) in sheets.into_iter().enumerate() {
+        let sheet = Some((name, index + 1, count));
+        sources.push(Source { text: Cow::Owned(text), encoding: kind.to_owned(), sheet, has_bare_formulas });
+    }
+    let name = |source: &Source<'_>| source.sheet.as_ref().map_or_else(String::new, |(name, ..)| name.clone());
+    if let Some(wanted) = wanted {
+        let by_name = sources.iter().position(|source| name(source) == wanted);
+        let by_number = || wanted.parse::<usize>().ok()?.checked_sub(1).filter(|index| *index < sources.len());
+        let Some(index) = by_name.or_else(by_number) else {
+            let names: Vec<String> = sources.iter().map(name).take(20).collect();
+            return Err(ImportError::of_file(format!("there is no sheet `{wanted:.40}` among {}", names.join(", "))));
+        };
+        sources = vec![sources.swap_remove(index)];
+    }
+    if sources.is_empty() { Err(ImportError::of_file("there are no sheets")) } else { Ok(sources) }
 }
 
 fn too_large() -> ImportError {
@@ -118,7 +122,7 @@ impl Text {
     }
 }
 
-fn of_xlsx(bytes: &[u8]) -> Result<Vec<(String, String)>, ImportError> {
+fn of_xlsx(bytes: &[u8]) -> Result<Vec<(String, String, bool)>, ImportError> {
     let fault = |error: calamine::XlsxError| ImportError::of_file(format!("this spreadsheet cannot be read: {error}"));
     let mut book: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(fault)?;
     let mut sheets = Vec::new();
@@ -137,16 +141,19 @@ fn of_xlsx(bytes: &[u8]) -> Result<Vec<(String, String)>, ImportError> {
             };
             text.add(row as usize, column as usize, &value)?;
         }
+        drop(cells);
         length += text.text.len();
         if length > text.most {
             return Err(too_large());
         }
-        sheets.push((name, text.text));
+        // Formulas whose values nobody stored.
+        let formulas = book.worksheet_formula(&name).is_ok_and(|formulas| formulas.used_cells().next().is_some());
+        sheets.push((name, text.text, formulas));
     }
     Ok(sheets)
 }
 
-fn of_ods(bytes: &[u8]) -> Result<Vec<(String, String)>, ImportError> {
+fn of_ods(bytes: &[u8]) -> Result<Vec<(String, String, bool)>, ImportError> {
     check_cells(bytes)?;
     let fault = |error: calamine::OdsError| ImportError::of_file(format!("this spreadsheet cannot be read: {error}"));
     let mut book: Ods<_> = Ods::new(Cursor::new(bytes)).map_err(fault)?;
@@ -158,7 +165,7 @@ fn of_ods(bytes: &[u8]) -> Result<Vec<(String, String)>, ImportError> {
         for (row, column, value) in range.used_cells() {
             text.add(first_row as usize + row, first_column as usize + column, &written(value))?;
         }
-        sheets.push((name, text.text));
+        sheets.push((name, text.text, false));
     }
     Ok(sheets)
 }
@@ -168,10 +175,10 @@ fn check_cells(bytes: &[u8]) -> Result<(), ImportError> {
     let damaged = |_| ImportError::of_file("this spreadsheet cannot be read: its content is damaged");
     let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| damaged(error.to_string()))?;
     let content = archive.by_name(CONTENT).map_err(|error| damaged(error.to_string()))?;
-    let repeats = |element: &BytesStart<'_>, name: &str| {
+    let repeats = |element: &BytesStart<'_>, name: &str, most: usize| {
         let value = element.attributes().flatten().find(|attribute| attribute.key.as_ref() == name);
-        let value = value.and_then(|value| value.value.parse::<usize>().ok());
-        value.unwrap_or(1)
+        let count = value.map_or(Ok(1), |value| value.value.trim().parse::<usize>());
+        count.ok().filter(|count| *count <= most).ok_or_else(too_large)
     };
     let most = bytes.len() / 2 + ALLOWANCE;
     let (mut cells, mut rows, mut widest) = (0_usize, 0_usize, 0_usize);
@@ -187,12 +194,16 @@ fn check_cells(bytes: &[u8]) -> Result<(), ImportError> {
                 "table:table" => (rows, widest) = (0, 0),
                 "table:table-row" => {
                     (row, open) = (0, 0);
-                    times = repeats(element, "table:number-rows-repeated");
+                    times = repeats(element, "table:number-rows-repeated", MOST_REPEATED[1])?;
                 }
                 "table:table-cell" | "table:covered-table-cell" => {
-                    let count = repeats(element, "table:number-columns-repeated");
+                    let count = repeats(element, "table:number-columns-repeated", MOST_REPEATED[0])?;
                     let is_empty = matches!(event, Event::Empty(_)) && element.attributes().count() < 3;
-                    (row, open) = if is_empty { (row, open + count) } else { (row + open + count, 0) };
+                    (row, open) = if is_empty {
+                        (row, open.saturating_add(count))
+                    } else {
+                        (row.saturating_add(open).saturating_add(count), 0)
+                    };
                 }
                 _ => {}
             },

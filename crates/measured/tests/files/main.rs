@@ -2,9 +2,14 @@
 //!
 //! `STICKSLIP_TEST_CASES` repeats each test with so many cases.
 
+mod bounds;
+mod loop_columns;
+mod made;
 mod refusals;
+mod scan_columns;
 mod spreadsheets;
 mod truth;
+mod whole;
 mod writer;
 
 use fastrand::Rng;

@@ -1,6 +1,6 @@
 //! What cannot be read for certain is refused at its place, and nothing makes the reader fail otherwise.
 
-use stickslip_measured::import::{ImportError, LoopHints, Places, ScanHints, read_loop, read_scan};
+use stickslip_measured::import::{ImportError, Mapping, Places, read_loop, read_scan};
 
 use super::for_cases;
 use super::writer::{CHARSETS, Charset, NO_UNITS, Style, one, shuffled};
@@ -35,9 +35,9 @@ fn a_unit_that_is_not_known_is_named_with_its_line_and_column() {
                 break charset;
             }
         };
-        let error = read_loop(&charset.encode(&file), &LoopHints::default()).unwrap_err();
+        let error = read_loop(&charset.encode(&file), &Mapping::default(), &|| true).unwrap_err();
         let column = order.iter().position(|index| *index == usize::from(is_force)).map(|index| index + 1);
-        let ImportError { line, column: found, unknown_unit, fault } = &error;
+        let ImportError { line, column: found, unknown_unit, fault, .. } = &error;
         assert_eq!((*line, *found), (Some(first - 1), column), "{error}\n{file}");
         assert_eq!(unknown_unit.as_deref(), Some(text), "{error}\n{file}");
         assert!(
@@ -59,7 +59,7 @@ fn a_cell_that_is_not_a_number_is_named_and_no_row_is_lost() {
             one(&["1.2.3", "four", "0x1F", "1;2".split(';').next().unwrap_or(""), "12a", "1e", "3,4,5.6"], random);
         rows[row][column] = format!("\"{bad}\"");
         let (file, first) = style.table(&names, &rows);
-        let read = read_loop(file.as_bytes(), &LoopHints::default());
+        let read = read_loop(file.as_bytes(), &Mapping::default(), &|| true);
         match read {
             Err(error) => {
                 assert_eq!((error.line, error.column), (Some(first + row), Some(column + 1)), "{error}\n{file}");
@@ -98,13 +98,13 @@ fn no_bytes_make_the_reader_fail_and_what_it_reads_is_finite_and_complete() {
                 }
             }
         }
-        if let Ok(found) = read_loop(&bytes, &LoopHints::default()) {
+        if let Ok(found) = read_loop(&bytes, &Mapping::default(), &|| true) {
             let count = found.displacement.len();
             assert_eq!((found.force.len(), found.time.as_ref().map_or(count, Vec::len)), (count, count));
             assert!(found.displacement.iter().chain(&found.force).all(|value| value.is_finite()));
             assert!(count <= found.preview.rows);
         }
-        if let Ok(found) = read_scan(&bytes, &ScanHints { most: 1000, ..ScanHints::default() }) {
+        if let Ok(found) = read_scan(&bytes, &Mapping::default(), 1000, &|| true) {
             let heights: Vec<Option<f64>> = match found.places {
                 Places::Line { x, z } => {
                     assert_eq!(x.len(), z.len());

@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Write as _};
 
-use stickslip_measured::import::{LoopHints, Places, ScanHints, read_loop, read_scan};
+use stickslip_measured::import::{Mapping, Places, read_loop, read_scan};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
@@ -81,13 +81,13 @@ fn a_row_is_a_line_and_an_error_a_missing_number() {
         &format!("{}{}", text("A3", "Displacement (\u{b5}m)"), text("B3", "Force (N)")),
         1,
     );
-    let found = read_loop(&xlsx(&rows), &LoopHints::default()).unwrap();
+    let found = read_loop(&xlsx(&rows), &Mapping::default(), &|| true).unwrap();
     assert_eq!((found.displacement.len(), found.force[0], found.displacement[9 - 1]), (9, 5.125, 14.0));
     assert_eq!(found.preview.rows_left_out, [3, 9]);
     let bad = rows.replace("Displacement (\u{b5}m)", "Displacement (?m)");
-    let error = read_loop(&xlsx(&bad), &LoopHints::default()).unwrap_err();
+    let error = read_loop(&xlsx(&bad), &Mapping::default(), &|| true).unwrap_err();
     assert_eq!((error.line, error.column, error.unknown_unit.as_deref()), (Some(3), Some(1), Some("?m")));
-    let error = read_loop(&xlsx(&rows), &LoopHints { sheet: Some("Other".to_owned()), ..LoopHints::default() });
+    let error = read_loop(&xlsx(&rows), &Mapping::parse("sheet:Other").unwrap(), &|| true);
     assert!(error.unwrap_err().fault.contains("no sheet `Other` among Loop"));
 }
 
@@ -105,8 +105,8 @@ fn repeated_cells_and_rows_of_opendocument_are_what_they_stand_for() {
     }
     rows += "<table:table-row table:number-rows-repeated=\"1048500\">\
              <table:table-cell table:number-columns-repeated=\"16384\"/></table:table-row>";
-    let hints = ScanHints { x: Some("4".to_owned()), z: Some("5".to_owned()), ..ScanHints::default() };
-    let found = read_scan(&ods(&rows), &hints).unwrap();
+    let mapping = Mapping::parse("x:4;z:5").unwrap();
+    let found = read_scan(&ods(&rows), &mapping, 0, &|| true).unwrap();
     let Places::Line { x, z } = found.places else { panic!("{:?}", found.places) };
     assert_eq!((x.len(), x[11], z[11]), (12, 11.0, Some(2.75)));
 }
@@ -134,8 +134,8 @@ fn spreadsheets_that_unpack_to_more_than_they_may_are_refused() {
     ] {
         assert!(bytes.len() < 1 << 20, "{what}");
         for error in [
-            read_loop(&bytes, &LoopHints::default()).unwrap_err(),
-            read_scan(&bytes, &ScanHints::default()).unwrap_err(),
+            read_loop(&bytes, &Mapping::default(), &|| true).unwrap_err(),
+            read_scan(&bytes, &Mapping::default(), 0, &|| true).unwrap_err(),
         ] {
             assert!(error.fault.contains("too large"), "{what}: {error}");
         }
@@ -157,8 +157,8 @@ fn files_that_are_no_text_are_named_with_the_way_to_read_them() {
         (b"{\"x\": [1]}".to_vec(), "JSON", "/fit"),
         (b"1;2\n3;4\n\0\0\x01\0\x02\xff".to_vec(), "binary file", "CSV"),
     ] {
-        let error = read_scan(&bytes, &ScanHints::default()).unwrap_err();
+        let error = read_scan(&bytes, &Mapping::default(), 0, &|| true).unwrap_err();
         assert!(error.fault.contains(name) && error.fault.contains(way), "{error}");
-        assert_eq!(read_loop(&bytes, &LoopHints::default()).unwrap_err(), error);
+        assert_eq!(read_loop(&bytes, &Mapping::default(), &|| true).unwrap_err(), error);
     }
 }

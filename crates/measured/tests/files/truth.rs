@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use fastrand::Rng;
-use stickslip_measured::import::{LoopHints, Places, ScanHints, read_loop, read_scan};
+use stickslip_measured::import::{Mapping, Places, read_loop, read_scan};
 
 use super::for_cases;
 use super::writer::{CHARSETS, Charset, FORCES, LENGTHS, MISSING, Style, TIMES, one, shuffled};
@@ -95,8 +95,8 @@ fn a_loop_is_what_was_written_in_any_unit_encoding_order_and_separator() {
         let (text, first) = style.table(&names, &rows);
         let charset = charset(random);
         let bytes = charset.encode(&text);
-        let found =
-            read_loop(&bytes, &LoopHints::default()).unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
+        let found = read_loop(&bytes, &Mapping::default(), &|| true)
+            .unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
         let kept: Vec<usize> = (0..ROWS)
             .filter(|row| {
                 let lacks = |cell: &String| MISSING.contains(&cell.as_str());
@@ -167,7 +167,7 @@ fn a_scan_is_what_was_written_in_any_unit_encoding_order_and_separator() {
             .collect();
         let (text, first) = style.table(&names, &rows);
         let charset = charset(random);
-        let found = read_scan(&charset.encode(&text), &ScanHints::default());
+        let found = read_scan(&charset.encode(&text), &Mapping::default(), 0, &|| true);
         let found = found.unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
         let context = || format!("{charset:?} {found:?}\n{text}");
         let Places::Line { x, z } = &found.places else { panic!("{}", context()) };

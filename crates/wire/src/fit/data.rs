@@ -99,16 +99,33 @@ impl MeasuredLoop {
         }
         match &self.time {
             Some(time) => {
-                if let Some(index) = time.windows(2).position(|pair| pair[1] <= pair[0]) {
-                    let detail = "not later than the time before it: give the points in the order of time";
+                if let Some(index) = time.windows(2).position(|pair| pair[1] < pair[0]) {
+                    let detail = "earlier than the time before it: give the points in the order of time";
                     faults.add(at.member("time").index(index.saturating_add(1)), detail);
                 }
             }
             None if drifts => faults.add(at.member("time"), "give the time of each point, or leave `drift` out"),
             None => {}
         }
+        self.time.iter_mut().for_each(|time| part(time));
         let [length, force] = units;
         self.displacement.iter_mut().for_each(|value| *value *= length);
         self.force.iter_mut().for_each(|value| *value *= force);
+    }
+}
+
+/// Parts equal stamps of a clock that is coarser than the points, evenly up to the next one; the last as the ones before.
+fn part(times: &mut [f64]) {
+    let mut begin = 0;
+    let mut step = 0.0;
+    while begin < times.len() {
+        let count = times[begin..].partition_point(|time| *time <= times[begin]).max(1);
+        if let Some(next) = times.get(begin + count) {
+            step = (next - times[begin]) / count as f64;
+        }
+        for index in 1..count {
+            times[begin + index] = times[begin] + step * index as f64;
+        }
+        begin += count;
     }
 }

@@ -28,6 +28,8 @@ impl Dimension {
     pub const LENGTH: Dimension = Dimension([1, 0, 0, 0, 0, 0]);
     /// A time.
     pub const TIME: Dimension = Dimension([0, 0, 1, 0, 0, 0]);
+    /// A mass.
+    pub const MASS: Dimension = Dimension([0, 1, 0, 0, 0, 0]);
     /// A force.
     pub const FORCE: Dimension = Dimension([1, 1, -2, 0, 0, 0]);
 
@@ -110,6 +112,12 @@ impl Unit {
             found: found.map(|unit| unit.dimension),
         };
         found.filter(|unit| unit.dimension == dimension).ok_or_else(unknown)
+    }
+
+    /// The SI unit of the same dimension.
+    #[must_use]
+    pub fn coherent(self) -> Unit {
+        Unit { mantissa: 1.0, power: 0, ..self }
     }
 
     /// A value in this unit in the SI unit; of a decimal multiple the nearest double.

@@ -86,8 +86,15 @@ pub(super) fn spelling(text: &str) -> Option<String> {
     for (sign, letters) in SIGNS {
         plain = plain.replace(sign, letters);
     }
-    let is_known = |letter: char| letter.is_ascii_alphanumeric() || " .*/^-%\u{e5}\u{b0}\u{2103}".contains(letter);
+    let is_known = |letter: char| {
+        letter.is_ascii_alphanumeric() || " .*/^-%\u{e5}\u{b0}\u{2103}".contains(letter) || is_word(letter)
+    };
     plain.chars().all(is_known).then_some(plain)
+}
+
+/// Whether a letter is one of the words of units in Cyrillic, Chinese, Japanese or Korean.
+fn is_word(letter: char) -> bool {
+    matches!(letter, 'а'..='я' | 'А'..='Я' | '\u{3040}'..='\u{30ff}' | '\u{4e00}'..='\u{9fff}' | '\u{ac00}'..='\u{d7a3}')
 }
 
 /// A text with the longest of some signs replaced wherever a unit may begin.

@@ -27,8 +27,12 @@ const PREFIXES: [(&[&str], i32); 11] = [
 
 /// Units that take prefixes: the symbol, the words, and the unit.
 const PREFIXED: [(&str, &[&str], Unit); 15] = [
-    ("m", &["metre", "metres", "meter", "meters"], Unit::new(METRE, 1.0, 0)),
-    ("s", &["second", "seconds", "sekunde", "sekunden"], Unit::new(SECOND, 1.0, 0)),
+    ("m", &["metre", "metres", "meter", "meters", "metro", "metros", "metri"], Unit::new(METRE, 1.0, 0)),
+    (
+        "s",
+        &["second", "seconds", "sekunde", "sekunden", "seconde", "secondes", "segundo", "segundos", "secondi"],
+        Unit::new(SECOND, 1.0, 0),
+    ),
     ("sec", &["sec", "secs", "sek"], Unit::new(SECOND, 1.0, 0)),
     ("N", &["newton", "newtons"], Unit::new(NEWTON, 1.0, 0)),
     ("g", &["gram", "grams", "gramme", "gramm"], Unit::new(KILOGRAM, 1.0, -3)),
@@ -45,7 +49,20 @@ const PREFIXED: [(&str, &[&str], Unit); 15] = [
 ];
 
 /// Units as they are, in lower case: those of workshops by their definition (inch, pound and standard gravity).
-const PLAIN: [(&[&str], Unit); 25] = [
+const PLAIN: [(&[&str], Unit); 38] = [
+    (&["мкм", "микрон", "микрометр", "微米", "マイクロメートル"], Unit::new(METRE, 1.0, -6)),
+    (&["мм", "миллиметр", "毫米"], Unit::new(METRE, 1.0, -3)),
+    (&["нм", "нанометр", "纳米"], Unit::new(METRE, 1.0, -9)),
+    (&["м", "метр", "米"], Unit::new(METRE, 1.0, 0)),
+    (&["н", "ньютон", "牛", "牛顿"], Unit::new(NEWTON, 1.0, 0)),
+    (&["мн"], Unit::new(NEWTON, 1.0, -3)),
+    (&["кн"], Unit::new(NEWTON, 1.0, 3)),
+    (&["кгс"], Unit::new(NEWTON, 980_665.0, -5)),
+    (&["с", "сек", "秒", "초"], Unit::new(SECOND, 1.0, 0)),
+    (&["мс", "毫秒"], Unit::new(SECOND, 1.0, -3)),
+    (&["мин", "分"], Unit::new(SECOND, 60.0, 0)),
+    (&["кг"], Unit::new(KILOGRAM, 1.0, 0)),
+    (&["г"], Unit::new(KILOGRAM, 1.0, -3)),
     (&["micron", "microns", "mikron", "mikrons"], Unit::new(METRE, 1.0, -6)),
     (&["angstrom", "angstroms", "angstroem", "angström", "å", "ångström", "ångstrom"], Unit::new(METRE, 1.0, -10)),
     (&["in", "inch", "inches", "zoll"], Unit::new(METRE, 254.0, -4)),
