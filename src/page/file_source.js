@@ -32,7 +32,8 @@ export function fileSource(kind, control, query, taken, fresh) {
     const number = (latest += 1);
     reading = new Promise((resolve) => setTimeout(resolve, rest)).then(async () => {
       if (number !== latest || !body().size) return;
-      const ask = async () => call("POST", `/files/${kind}?${new URLSearchParams(withMapping(query(), mapping))}`, body());
+      const said = () => new URLSearchParams(withMapping(query(), mapping));
+      const ask = async () => call("POST", `/files/${kind}?${said()}`, body());
       const [reply, error] = await ask().then(
         (reply) => [reply],
         (error) => [null, error],

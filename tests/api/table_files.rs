@@ -1,5 +1,5 @@
-//! Files of which every line is accounted for (`tests/table_files`), over HTTP and on the command line: read as what they
-//! hold, or refused with a mapping that settles it.
+//! Files of which every line is accounted for (`tests/table_files`), over HTTP and on the command line: read as what
+//! they hold, or refused with a mapping that settles it.
 
 use std::path::{Path, PathBuf};
 

@@ -99,8 +99,8 @@ parameters! {
         force: String = text(&COLUMN);
         /// The column of times, or `none`; without it the column with such a name, if its times do not fall.
         time: String = text(&COLUMN);
-        /// The column of loads, whose mean is the load if they are constant, `none`, or the load with its unit (`10 N`);
-        /// without it the column with such a name.
+        /// The column of loads, whose mean is the load if they are constant, `none`, or the load with its unit
+        /// (`10 N`); without it the column with such a name.
         load: String = text(&COLUMN);
         /// The unit of displacements; without it the one that the header names, or m.
         displacement_unit: UnitHint = length();
@@ -165,7 +165,8 @@ impl TryFrom<LoopFileQuery> for Mapping {
 /// columns and units were interpreted. Columns and units are found by the header; without one, two columns are x and z
 /// of a line, three are x, y and z, and more are a matrix, as Gwyddion exports it. Zygo's text format, ISO 25178-71 and
 /// grids are known by their first line. An unknown unit is refused with the code `unknown_unit`, its line and its
-/// column, a file that may mean several things with `ambiguous_file` and the mapping for each. A file with more heights than a scan may have is thinned. The body may also be sent as `text/csv` or
+/// column, a file that may mean several things with `ambiguous_file` and the mapping for each. A file
+/// with more heights than a scan may have is thinned. The body may also be sent as `text/csv` or
 /// `text/plain`.
 #[utoipa::path(
     post, path = "/files/scan", tag = "simulation", params(ScanFileQuery),

@@ -117,7 +117,8 @@ impl Needed {
                 mapping: format!("{quantity}:{}:{unit}", column + 1),
             };
             let fault = format!(
-                "`{text}` is a unit that was not used (unused_unit): the column is in `{used}` by another line of the head"
+                "`{text}` is a unit that was not used (unused_unit): the column is in `{used}` by another \
+                 line of the head"
             );
             let candidates = vec![candidate(used), candidate(text)];
             return Err(ImportError { candidates, ..ImportError::at(*line, column + 1, fault) });

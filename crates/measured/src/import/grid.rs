@@ -1,5 +1,5 @@
-//! Heights with a header of their own, as text: grids of ISO 25178-71 (`.sdf`), of ESRI (`.asc`) and of Surfer (`.grd`),
-//! and profiles of ISO 5436-2 (`.smd`).
+//! Heights with a header of their own, as text: grids of ISO 25178-71 (`.sdf`), of ESRI (`.asc`) and of Surfer
+//! (`.grd`), and profiles of ISO 5436-2 (`.smd`).
 
 use super::error::ImportError;
 use super::lines::lines;

@@ -63,7 +63,10 @@ impl Row {
         // One word above all columns names none of them.
         let is_one_word = filled().count() > 1 && filled().all(|cell| Some(cell) == filled().next());
         let named = if is_one_word { 0 } else { filled().filter(|cell| is_named(cell) && !is_unit(cell)).count() };
-        let bracketed = |cell: &&String| matches!(Label::of(cell), Label { unit: Mention::Known(..), name, .. } if !name.is_empty());
+        let bracketed = |cell: &&String| {
+            let Label { unit, name, .. } = Label::of(cell);
+            matches!(unit, Mention::Known(..)) && !name.is_empty()
+        };
         let is_units = filled().any(|cell| is_unit(cell))
             && filled()
                 .all(|cell| is_unit(cell) || cell.chars().count() < 4 && !is_named(cell) || is_key(cell, &UNIT_KEYS));

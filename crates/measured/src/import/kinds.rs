@@ -107,7 +107,8 @@ pub(super) fn refusal(bytes: &[u8]) -> Option<String> {
         None if starts(b"<?xml") => Some(sentence("an XML document", TEXT)),
         None if starts(b"{") && is_lines_of_json(text) => Some(sentence(
             "JSON Lines",
-            "read it with pandas.read_json(file, lines=True) and give the table to the Python package, or export its columns as text (CSV)",
+            "read it with pandas.read_json(file, lines=True) and give the table to the Python package, or export its \
+             columns as text (CSV)",
         )),
         None if is_universal(bytes) => Some(sentence(
             "a universal file (UFF, dataset 58)",

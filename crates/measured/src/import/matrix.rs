@@ -154,7 +154,8 @@ pub(super) fn read(
     } else {
         return Err(ImportError::of_file(format!(
             "{width} columns are a matrix of heights: give the distance of its neighbours (`spacing`, or \
-             `mapping=spacing:5;lateral:um;height:nm`), or its `Width` and `Height` in the header; or choose the columns \
+             `mapping=spacing:5;lateral:um;height:nm`), or its `Width` and `Height` in the header; or choose the \
+             columns \
              of a line by `x` and `z`"
         )));
     };

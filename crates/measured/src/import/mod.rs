@@ -1,7 +1,7 @@
 //! Files of instruments: one reading of them for everybody who takes such a file.
 //!
-//! [`read_scan`] and [`read_loop`] take the bytes of a file as it is: text in any usual encoding, with columns separated
-//! by semicolons, tabulators, bars, white space or commas, or a spreadsheet. A file goes through these rooms:
+//! [`read_scan`] and [`read_loop`] take the bytes of a file as it is: text in any usual encoding, with columns
+//! separated by semicolons, tabulators, bars, white space or commas, or a spreadsheet. A file goes through these rooms:
 //!
 //! | room | makes of it |
 //! |---|---|

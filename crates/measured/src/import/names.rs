@@ -90,8 +90,10 @@ const ELSEWHERE: [(Meaning, &str); 10] = [
     (Meaning::Other, "temperatura température температура 温度 온도"),
     (
         Meaning::Load,
-        "forcenormale fuerzanormal forzanormale forcanormal normaalkracht silanormalna normalovasila normalkraft normalkuvvet \
-         carganormal caricon charge carga carico belasting obciazenie zatizeni нормальнаясила нормальнаянагрузка нагрузка \
+        "forcenormale fuerzanormal forzanormale forcanormal normaalkracht silanormalna normalovasila normalkraft \
+         normalkuvvet \
+         carganormal caricon charge carga carico belasting obciazenie zatizeni нормальнаясила \
+         нормальнаянагрузка нагрузка \
          法向力 法向载荷 正压力 载荷 垂直荷重 垂直力 法線力 荷重 수직력 수직하중 하중",
     ),
     (

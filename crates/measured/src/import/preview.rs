@@ -188,7 +188,8 @@ impl Preview {
     pub(super) fn say_zeros(&mut self, count: usize, first: usize) {
         if count > 0 {
             let what = format!(
-                "{count} rows of zeros at the end, the first at line {first}, are an array that was not filled, and left out"
+                "{count} rows of zeros at the end, the first at line {first}, are an array that was not filled, and \
+                 left out"
             );
             self.assumed.push(format!("{what}: `last_line` in `mapping` keeps them."));
             self.reading.push(format!("{what}."));

@@ -443,8 +443,8 @@ impl<'a> Sheet<'a> {
         self.is_text.truncate(widest);
     }
 
-    /// Asks about a first row that is written otherwise than all that follow, in every column: it may be a line of scales
-    /// or of numbers of channels.
+    /// Asks about a first row that is written otherwise than all that follow, in every column: it may be a line of
+    /// scales or of numbers of channels.
     fn check_first_row(&self) -> Result<(), ImportError> {
         let decimals = |row: usize, column: usize| {
             let text = self.table.text(self.row(row), column);

@@ -130,7 +130,8 @@ impl<'a> Table<'a> {
             separator.split(line, &mut cells);
             if table.cells.len() + cells.len() > MOST_CELLS {
                 let fault = format!(
-                    "has the {MOST_CELLS} cells (columns x rows) behind it that a file may have: leave out columns or rows"
+                    "has the {MOST_CELLS} cells (columns x rows) behind it that a file may have: leave out columns or \
+                     rows"
                 );
                 return Err(ImportError::at_line(number, fault));
             }

@@ -1,5 +1,5 @@
-//! Files of which every line is accounted for (`tests/table_files`): each is read as what it holds, or refused with a way
-//! out that works. `truth.json` beside them has what they hold and what is right for each.
+//! Files of which every line is accounted for (`tests/table_files`): each is read as what it holds, or refused with a
+//! way out that works. `truth.json` beside them has what they hold and what is right for each.
 
 use std::path::{Path, PathBuf};
 
