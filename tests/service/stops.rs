@@ -53,15 +53,22 @@ fn on(file: &Path, options: &[&str]) -> Service {
     Service::start_on(&format!("sqlite:{}", file.display()), &[&["--log", "warn"], options].concat())
 }
 
-/// Requests that go on for most of an hour unless they are stopped, by the kind of their work: each way on which a
-/// request reaches a solver. `crates/compute/tests/stops.rs` has the kinds of work that ask whether to go on.
+/// Requests that go on for most of an hour (a file, for seconds) unless they are stopped, by the kind of their work:
+/// each way on which a request reaches a solver. `crates/compute/tests/stops.rs` has the kinds of work that ask whether to go on.
 fn kinds(contact: Uuid, fresh: Uuid) -> Vec<(&'static str, String)> {
     vec![
         ("a simulation", post("/simulate", &long_simulation().to_string())),
         ("a path", post(&format!("/contacts/{fresh}/path"), &long_path().to_string())),
         ("loading", get(&format!("/contacts/{contact}"))),
         ("tracing", get(&format!("/contacts/{contact}/loop?points_per_move=100"))),
+        ("a file", post("/files/scan", &long_file()).replacen("application/json", "text/csv", 1)),
     ]
+}
+
+/// A file of an instrument that takes a good part of a second to read.
+fn long_file() -> String {
+    let row = |index: u32| format!("{};{}.25;{}\n", index % 4096, index, index * 7 % 1000);
+    std::iter::once("X [um];Y [um];Z [nm]\n".to_owned()).chain((0..600_000).map(row)).collect()
 }
 
 /// Waits until no thread of the solver is at work.
@@ -121,6 +128,7 @@ async fn work_of_every_kind_ends_at_the_deadline() {
         let expected = match name {
             "loading" | "tracing" => &["too_much_work"][..],
             "preparing" => &["too_much_work", "0.01 s", "/contact/profile"],
+            "a file" => &["too_much_work", "0.01 s"],
             _ => &["too_much_work", "0.01 s", "/path/moves/"],
         };
         assert!(expected.iter().all(|words| answer.text.contains(words)), "{name}: {}", answer.text);

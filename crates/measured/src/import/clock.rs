@@ -136,6 +136,13 @@ pub(super) fn seconds<'a>(texts: impl Iterator<Item = &'a str> + Clone, said: Op
     }
 }
 
+/// Whether a text is a date or a time of day in some format, with two digits behind each colon.
+pub(super) fn is_stamp(text: &str) -> bool {
+    let digits = |part: &str| part.bytes().take_while(u8::is_ascii_digit).count();
+    let is_clock = text.split(':').skip(1).all(|part| digits(part) == 2 || part.len() == 3);
+    is_clock && seconds(std::iter::once(text), None) != Times::None
+}
+
 /// Seconds since the first; a clock without dates goes on after midnight.
 fn since_first(seconds: &[Option<f64>], is_dated: bool) -> Vec<Option<f64>> {
     let first = seconds.iter().flatten().next().copied().unwrap_or(0.0);

@@ -7,30 +7,35 @@ const LONGEST_CELL: [usize; 2] = [4, 2000];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Separator {
     /// A character, which quotes keep.
-    Sign(u8),
+    Sign(char),
     /// Any number of blanks.
     WhiteSpace,
 }
 
 /// Separators that have a name, and what they are in a sentence.
 const NAMED: [(Separator, &str, &str); 5] = [
-    (Separator::Sign(b';'), "semicolon", "semicolons"),
-    (Separator::Sign(b'\t'), "tab", "tabulators"),
-    (Separator::Sign(b'|'), "pipe", "vertical bars"),
-    (Separator::Sign(b','), "comma", "commas"),
+    (Separator::Sign(';'), "semicolon", "semicolons"),
+    (Separator::Sign('\t'), "tab", "tabulators"),
+    (Separator::Sign('|'), "pipe", "vertical bars"),
+    (Separator::Sign(','), "comma", "commas"),
     (Separator::WhiteSpace, "white_space", "white space"),
 ];
-/// Other signs that may separate, each by itself as its name.
-const OTHERS: &[u8] = b"&!~^#:/*$@%_=\\\x1f\x1e";
+/// Signs of numbers and texts, which separate nothing.
+const OF_CELLS: &str = ".+-'\"()[]{}\u{2212}\u{2019}\u{ab}\u{bb}";
 
 impl Separator {
-    pub(super) const TAB: Separator = Separator::Sign(b'\t');
-    pub(super) const COMMA: Separator = Separator::Sign(b',');
+    pub(super) const TAB: Separator = Separator::Sign('\t');
+    pub(super) const COMMA: Separator = Separator::Sign(',');
 
-    /// All of them that a text may have, the most certain first.
-    pub(super) fn all() -> impl Iterator<Item = Separator> + Clone {
-        let others = OTHERS.iter().map(|sign| Separator::Sign(*sign));
-        Separator::usual().chain(others)
+    /// All of them that these lines may have, the most certain first: beside those that are usual any sign.
+    pub(super) fn all(lines: &[&str]) -> Vec<Separator> {
+        let mut all: Vec<Separator> = Separator::usual().collect();
+        for sign in lines.iter().flat_map(|line| line.chars()).filter(|sign| may_separate(*sign)) {
+            if !all.contains(&Separator::Sign(sign)) {
+                all.push(Separator::Sign(sign));
+            }
+        }
+        all
     }
 
     /// Those that are usual.
@@ -41,20 +46,17 @@ impl Separator {
     /// The separator of this name, or of this sign.
     pub(super) fn parse(text: &str) -> Option<Separator> {
         let named = NAMED.iter().find(|(_, name, _)| *name == text).map(|(one, ..)| *one);
-        let sign = || {
-            Some(text.as_bytes()[0]).filter(|sign| text.len() == 1 && (OTHERS.contains(sign) || b"|,;".contains(sign)))
-        };
-        let named = named.or_else(|| (text == "colon").then_some(Separator::Sign(b':')));
-        named.or_else(|| sign().map(Separator::Sign))
+        let mut letters = text.chars();
+        let sign = letters.next().filter(|sign| letters.next().is_none() && may_separate(*sign));
+        let named = named.or_else(|| (text == "colon").then_some(Separator::Sign(':')));
+        named.or_else(|| sign.map(Separator::Sign))
     }
 
     /// Its name in a reply.
     pub(super) fn name(self) -> String {
         let named = NAMED.iter().find(|(one, ..)| *one == self).map(|(_, name, _)| (*name).to_owned());
         named.unwrap_or_else(|| {
-            self.sign().map_or_else(String::new, |sign| {
-                if sign == b':' { "colon".to_owned() } else { char::from(sign).to_string() }
-            })
+            self.sign().map_or_else(String::new, |sign| if sign == ':' { "colon".to_owned() } else { sign.to_string() })
         })
     }
 
@@ -64,7 +66,7 @@ impl Separator {
         named.unwrap_or_else(|| format!("`{}`", self.name()))
     }
 
-    fn sign(self) -> Option<u8> {
+    fn sign(self) -> Option<char> {
         if let Separator::Sign(sign) = self { Some(sign) } else { None }
     }
 
@@ -80,20 +82,24 @@ impl Separator {
             words(line, cells);
             return;
         };
-        let bytes = line.as_bytes();
         let mut start = 0;
-        while start <= bytes.len() {
-            let quoted = closing_quote(bytes, start, separator);
-            let from = quoted.unwrap_or(start);
-            let end = bytes[from..].iter().position(|byte| *byte == separator).map_or(bytes.len(), |at| from + at);
+        while start <= line.len() {
+            let from = closing_quote(line, start, separator).unwrap_or(start);
+            let end = line[from..].find(separator).map_or(line.len(), |at| from + at);
             cells.push(line[start..end].trim());
-            start = end + 1;
+            start = end + separator.len_utf8();
         }
     }
 }
 
+/// Whether a sign may separate cells.
+pub(super) fn may_separate(sign: char) -> bool {
+    !(sign.is_alphanumeric() || sign.is_whitespace() || OF_CELLS.contains(sign))
+}
+
 /// The index behind the quote that closes a cell which begins here with one, if that ends the cell.
-fn closing_quote(bytes: &[u8], start: usize, separator: u8) -> Option<usize> {
+fn closing_quote(line: &str, start: usize, separator: char) -> Option<usize> {
+    let bytes = line.as_bytes();
     let mut open = start + bytes[start..].iter().position(|byte| *byte != b' ')?;
     // A number as the formula of a text, `="0,30"`.
     open += usize::from(bytes[open] == b'=');
@@ -107,8 +113,8 @@ fn closing_quote(bytes: &[u8], start: usize, separator: u8) -> Option<usize> {
             close += 1;
             continue;
         }
-        let rest = bytes[close..].iter().find(|byte| **byte != b' ');
-        return rest.is_none_or(|byte| *byte == separator).then_some(close);
+        let rest = line[close..].trim_start_matches(' ');
+        return (rest.is_empty() || rest.starts_with(separator)).then_some(close);
     }
 }
 
@@ -191,7 +197,7 @@ mod tests {
         };
         assert_eq!(of(Separator::COMMA, "-60,\"-225,0\""), ["-60", "\"-225,0\""]);
         assert_eq!(of(Separator::COMMA, "1,, \"a \"\"b\"\",c\" ,"), ["1", "", "\"a \"\"b\"\",c\"", ""]);
-        assert_eq!(of(Separator::Sign(b';'), "5\" x;\"6;7"), ["5\" x", "\"6", "7"]);
+        assert_eq!(of(Separator::Sign(';'), "5\" x;\"6;7"), ["5\" x", "\"6", "7"]);
         assert_eq!(of(Separator::WhiteSpace, "  1.5\tNo Data  \"x (um)\" 3"), ["1.5", "No Data", "\"x (um)\"", "3"]);
         assert_eq!(of(Separator::TAB, "a\t\tb\t"), ["a", "", "b", ""]);
     }

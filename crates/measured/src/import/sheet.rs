@@ -1,9 +1,10 @@
 //! A table of numbers in a text: which lines are its rows, which its head, and what the others are.
 
+use super::clock;
 use super::error::{Candidate, ImportError};
 use super::head::{self, Head};
 use super::label::{Label, Mention};
-use super::lines::Separator;
+use super::lines::{Separator, may_separate};
 use super::mapping::Mapping;
 use super::number::{Evidence, Mark};
 use super::table::{self, Sort, Table};
@@ -134,7 +135,38 @@ impl<'a> Sheet<'a> {
             amounts: Vec::new(),
         };
         sheet.find(range, mapping)?;
+        if forced.is_none() {
+            sheet.check_separator()?
+        }
         Ok(sheet)
+    }
+
+    /// Asks about a column of texts that are numbers with another sign between them.
+    fn check_separator(&self) -> Result<(), ImportError> {
+        let is_glued = |row: &u32, column: usize| {
+            let text = self.table.text(*row as usize, column);
+            table::is_glued(text) && !clock::is_stamp(text)
+        };
+        let is_open = |column: &usize| {
+            let looked_at = self.rows.iter().take(8);
+            self.is_text[*column]
+                && 2 * looked_at.clone().filter(|row| is_glued(row, *column)).count() > looked_at.len()
+        };
+        let Some(column) = (0..self.width).find(is_open) else { return Ok(()) };
+        let (line, text) = (self.table.line(self.row(0)), self.table.text(self.row(0), column));
+        let mut signs: Vec<char> = text.chars().filter(|sign| may_separate(*sign)).collect();
+        signs.dedup();
+        let separators = signs.into_iter().map(Separator::Sign).chain(std::iter::once(self.table.separator));
+        let of = |separator: Separator| Candidate {
+            quantity: "separator",
+            column: None,
+            name: separator.plural(),
+            values: vec![line.chars().take(80).collect()],
+            mapping: format!("separator:{}", separator.name()),
+        };
+        let fault = format!("`{text:.40}` may be numbers with a separator between them");
+        let candidates = separators.map(of).collect();
+        Err(ImportError { candidates, ..ImportError::at(self.line(0), column + 1, fault) })
     }
 
     /// Finds rows and head among the lines with these numbers.
@@ -192,6 +224,10 @@ impl<'a> Sheet<'a> {
             None => None,
         };
         let block = self.one_table(blocks, chosen)?;
+        if chosen.is_some() {
+            let rows: Vec<usize> = block.rows.iter().map(|row| *row as usize).collect();
+            self.columns_of(&rows);
+        }
         self.check_foreign(&foreign, &block, is_said || chosen.is_some())?;
         let first = block.rows[0] as usize;
         self.rows = block.rows;

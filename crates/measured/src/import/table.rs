@@ -1,7 +1,8 @@
 //! The lines of a text and their cells, read once: numbers as numbers, and texts as their places.
 
+use super::clock;
 use super::error::ImportError;
-use super::lines::{Separator, lines};
+use super::lines::{Separator, lines, may_separate};
 use super::mapping::amount;
 use super::number::{Kind, Mark, kind, number, unquoted};
 
@@ -11,6 +12,8 @@ const MOST_CELLS: usize = 1 << 24;
 const BETWEEN: [usize; 2] = [256, 65_536];
 /// Lines that are looked at for the separator: the first, and others evenly over the text.
 const SAMPLE: usize = 400;
+/// Of them, lines that may name the columns.
+const MOST_NAMES: usize = 100;
 
 /// A number, or a place in the text, in eight bytes: what is no number is a NaN with its place in it.
 #[derive(Clone, Copy)]
@@ -231,11 +234,13 @@ pub(super) fn separator(text: &str) -> Option<Separator> {
         .map(|(_, (_, line))| line.trim_matches([' ', '\u{feff}']))
         .filter(|line| !line.trim().is_empty() && !is_comment(line))
         .collect();
-    let mut best: Option<(i64, Separator)> = None;
+    let (mut best, mut whole): (Option<(i64, Separator)>, Vec<(usize, Separator)>) = (None, Vec::new());
     let mut cells = Vec::new();
-    for separator in Separator::all() {
+    let mut stamps;
+    for separator in Separator::all(&sample) {
         // Of each width the number of lines, of those with texts, and their score.
         let mut widths: Vec<(usize, [usize; 2], i64)> = Vec::new();
+        stamps = 0;
         for line in &sample {
             separator.split(line, &mut cells);
             if cells.len() < 2 {
@@ -245,11 +250,12 @@ pub(super) fn separator(text: &str) -> Option<Separator> {
             for cell in &cells {
                 match kind(cell, separator.keeps_blanks()) {
                     Kind::Number(_) | Kind::Either | Kind::Amount => numbers += 1,
-                    Kind::Text if !is_stamp(cell) => {
+                    Kind::Text if !clock::is_stamp(unquoted(cell)) => {
                         texts += 1;
                         glued += i64::from(is_glued(cell));
                     }
-                    Kind::Missing | Kind::Text => {}
+                    Kind::Text => stamps += 1,
+                    Kind::Missing => {}
                 }
             }
             let score = 2 * numbers - texts;
@@ -266,12 +272,15 @@ pub(super) fn separator(text: &str) -> Option<Separator> {
             }
         }
         let all: usize = widths.iter().map(|(_, lines, _)| lines[0]).sum();
-        let Some((_, lines, score)) = widths.iter().max_by_key(|(_, lines, _)| lines[0]) else { continue };
+        let Some((width, lines, score)) = widths.iter().max_by_key(|(_, lines, _)| lines[0]) else { continue };
         // A sign that makes nearly all rows of one width and of numbers alone is no part of them.
         let is_whole = 4 * lines[1] <= lines[0] && 10 * lines[0] >= 9 * all;
         let is_usual = Separator::usual().any(|usual| usual == separator);
         if is_whole && 2 * lines[0] > sample.len().min(8) {
-            return Some(separator);
+            if stamps == 0 && whole.is_empty() {
+                return Some(separator);
+            }
+            whole.push((*width, separator));
         }
         // White space also parts what other separators do, and words of the header besides.
         let least = |score: i64| if separator == Separator::WhiteSpace { score + score / 10 } else { score };
@@ -279,44 +288,30 @@ pub(super) fn separator(text: &str) -> Option<Separator> {
             best = Some((*score, separator));
         }
     }
-    best.map(|(_, separator)| separator)
+    // What looks like a time may be the end of a number and the beginning of the next: the line of names decides.
+    let has_names = |(width, separator): &&(usize, Separator)| {
+        sample.iter().take(MOST_NAMES).any(|line| {
+            let mut cells = Vec::new();
+            separator.split(line, &mut cells);
+            cells.len() == *width && cells.iter().all(|cell| matches!(kind(cell, true), Kind::Text | Kind::Missing))
+        })
+    };
+    let chosen = whole.iter().find(has_names).or(whole.first());
+    chosen.map(|(_, separator)| *separator).or(best.map(|(_, separator)| separator))
 }
 
 /// Whether a text begins and ends with digits: numbers that another sign separates.
-fn is_glued(cell: &str) -> bool {
+pub(super) fn is_glued(cell: &str) -> bool {
     let cell = unquoted(cell);
     let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
-    is_digit(cell.chars().next())
-        && is_digit(cell.chars().next_back())
-        && cell.contains(|sign: char| !(sign.is_alphanumeric() || " -".contains(sign)))
-}
-
-/// Whether a text is a date or a time of day by its signs.
-fn is_stamp(cell: &str) -> bool {
-    let cell = unquoted(cell);
-    // Behind each colon there are two digits.
-    let is_clock = |part: &str| {
-        let digits = part.bytes().take_while(u8::is_ascii_digit).count();
-        digits == 2
-    };
-    if cell.contains(':') && !cell.split(':').skip(1).all(|part| is_clock(part) || part.len() == 3) {
-        return false;
-    }
-    let begins = cell.bytes().next().is_some_and(|byte| byte.is_ascii_digit());
-    let is_date = |sign: char| {
-        let parts = cell.split(sign);
-        parts.clone().count() == 3
-            && parts.clone().all(|part| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric()))
-    };
-    begins && (cell.contains(':') || ['-', '/', '.'].into_iter().any(is_date))
+    is_digit(cell.chars().next()) && is_digit(cell.chars().next_back()) && cell.contains(may_separate)
 }
 
 impl Separator {
     /// About as many cells as a text has, and at least so many.
     fn count(self, text: &str) -> usize {
-        let ends = |byte: &u8| matches!(byte, b'\n' | b'\r');
         match self {
-            Separator::Sign(sign) => text.bytes().filter(|byte| *byte == sign || ends(byte)).count() + 1,
+            Separator::Sign(sign) => text.matches([sign, '\n', '\r']).count() + 1,
             Separator::WhiteSpace => {
                 let pairs = text.as_bytes().windows(2);
                 pairs.filter(|pair| pair[0].is_ascii_whitespace() && !pair[1].is_ascii_whitespace()).count() + 1

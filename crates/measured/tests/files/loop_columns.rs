@@ -76,3 +76,21 @@ fn a_column_that_is_not_there_is_named_with_those_that_are() {
     }
     assert_eq!(read_loop(b"1;2\n3;4\n", &Mapping::default(), &|| true).unwrap().force, [2.0, 4.0]);
 }
+
+#[test]
+fn any_sign_may_separate_columns_with_decimal_commas_and_dates() {
+    for sign in "\u{a7}\u{a6}\u{b7}\u{2022}\u{b0}\u{20ac}&!~^#/*$@%_=\\|<>?\u{1f};\t".chars() {
+        let row = |row: u32| {
+            let cells =
+                [format!("2026-06-01T14:15:{row:02}Z"), format!("0,{}5", row % 7 + 1), format!("-1,{}", row % 5 + 1)];
+            cells.join(&sign.to_string())
+        };
+        let head = ["Time", "Displacement (um)", "Force (mN)"].join(&sign.to_string());
+        let rows: Vec<String> = std::iter::once(head).chain((0..20).map(row)).collect();
+        let found = read_loop(rows.join("\n").as_bytes(), &Mapping::default(), &|| true);
+        let found = found.unwrap_or_else(|error| panic!("{sign:?}: {error}"));
+        assert_eq!((found.displacement[1], found.force[1]), (0.25, -1.2), "{sign:?}");
+        assert_eq!(found.time.unwrap()[19], 19.0, "{sign:?}");
+        assert!(Mapping::parse(&found.preview.mapping).is_ok(), "{sign:?}: {}", found.preview.mapping);
+    }
+}

@@ -16,7 +16,7 @@ const ROWS: usize = 24;
 /// Of the files that a person would read without a question, those that are.
 const LEAST_READ: f64 = 0.9;
 
-const SEPARATORS: [char; 7] = [';', '\t', ',', '|', '!', '&', '~'];
+const SEPARATORS: [char; 12] = [';', '\t', ',', '|', '!', '&', '~', '\u{a7}', '/', ':', '\u{a6}', '\u{1f}'];
 const LENGTHS: [(&str, f64); 4] = [("um", 1e-6), ("nm", 1e-9), ("mm", 1e-3), ("\u{b5}m", 1e-6)];
 const FORCES: [(&str, f64); 3] = [("N", 1.0), ("mN", 1e-3), ("kN", 1e3)];
 const SECONDS: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
@@ -73,7 +73,8 @@ fn made(random: &mut Rng) -> Made {
     columns.push((one(&DISPLACEMENTS, random).to_owned(), length.0.to_owned(), Box::new(move |row| written(u(row)))));
     columns.push((one(&TANGENTIAL, random).to_owned(), newton.0.to_owned(), Box::new(move |row| written(f(row)))));
     let mut dt = None;
-    match random.usize(..6) {
+    // A colon between cells leaves times of day without a place.
+    match random.usize(..if separator == ':' { 3 } else { 6 }) {
         0 => {}
         1 | 2 => {
             dt = Some(0.25);
