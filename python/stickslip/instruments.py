@@ -128,13 +128,17 @@ def mapping_of(mapping: str | Mapping[str, Any]) -> str:
     """A mapping as text: of a dict its entries, of which a pair is a column and its unit."""
     if isinstance(mapping, str):
         return mapping
-    text = {name: ":".join(map(str, value)) if isinstance(value, tuple | list) else value for name, value in mapping.items()}
+    text = {
+        name: ":".join(map(str, value)) if isinstance(value, tuple | list) else value for name, value in mapping.items()
+    }
     return ";".join(f"{name}:{value}" for name, value in text.items())
 
 
 def hints_of(hints: ScanHints | LoopHints) -> dict[str, Any]:
     """Hints as the importer takes them: a column may be given by its number, and a mapping as a dict."""
-    plain: dict[str, Any] = {name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()}
+    plain: dict[str, Any] = {
+        name: str(hint) if isinstance(hint, int) and name != "spacing" else hint for name, hint in hints.items()
+    }
     return {name: mapping_of(hint) if name == "mapping" else hint for name, hint in plain.items()}
 
 

@@ -2,6 +2,7 @@
 
 /// How formats of instruments are read that are no text.
 const PYTHON: &str = "the Python package reads it (`pip install \"stickslip[scans]\"`), or export it as text";
+#[cfg(feature = "spreadsheets")]
 const JPK: &str = "export it as text in JPK's data processing, or read it with afmformats";
 const TEXT: &str = "export its columns as text (CSV)";
 
