@@ -283,7 +283,7 @@ async fn what_is_wrong_with_a_file_is_said_by_line_and_column() {
     let server = Server::start().await;
     for (path, text, pointer, detail) in [
         ("scan", "1;2\n3;four\n", "/line/2/column/2", "`four` is not a number"),
-        ("scan", "x,z\n1,2\n3,4,5\n", "/line/3", "has 3 columns, and the first 2"),
+        ("scan", "x,z\n1,2\n3,4,5\n", "/line/3", "has 3 columns, and the other rows 2"),
         ("scan", "", "", "no rows of numbers"),
         ("loop", "a;b;c\n1;2;3\n", "", "no column `displacement` among 3 columns with a, b, c"),
         ("loop?force=9", "1;2\n3;4\n", "", "no column `9` among 2 columns with no names"),
