@@ -127,6 +127,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "rows": ("", "1"),
         "rows_left_out": ("RowsLeftOut", None),
         "separator": ("", None),
+        "table": ("[ShownFileLine]", None),
         "thinned": ("", "1"),
     },
     "FitEstimate": {
@@ -259,6 +260,10 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "no_life": ("", None),
         "shortest": ("", "1"),
     },
+    "LineCount": {
+        "count": ("", "1"),
+        "first": ("", "1"),
+    },
     "LineInFile": {
         "x": ("[]", None),
         "z": ("[]", None),
@@ -268,9 +273,13 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "normal_force": ("[]", "N"),
     },
     "LoopFileReply": {
+        "assumed": ("", None),
+        "lines": ("{LineCount}", None),
         "loop": ("LoopInFile", None),
+        "mapping": ("", None),
         "preview": ("FilePreview", None),
         "units": ("", None),
+        "unused": ("[UnusedPart]", None),
     },
     "LoopInFile": {
         "displacement": ("[]", None),
@@ -517,9 +526,13 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "lines": ("#", "1"),
     },
     "ScanFileReply": {
+        "assumed": ("", None),
+        "lines": ("{LineCount}", None),
+        "mapping": ("", None),
         "preview": ("FilePreview", None),
         "scan": ("", None),
         "units": ("", None),
+        "unused": ("[UnusedPart]", None),
     },
     "ScanResidual": {
         "correlation_length": ("", "m"),
@@ -549,6 +562,11 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "Share": {
         "standard_error": ("", "1"),
         "value": ("", "1"),
+    },
+    "ShownFileLine": {
+        "cells": ("", None),
+        "kind": ("", None),
+        "line": ("", "1"),
     },
     "SignRuns": {
         "count": ("", "1"),
@@ -717,6 +735,12 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "outputs": ("[UncertainOutput]", None),
         "points": ("", "1"),
         "warnings": ("[Warning]", None),
+    },
+    "UnusedPart": {
+        "column": ("", "1"),
+        "line": ("", "1"),
+        "reason": ("", None),
+        "text": ("", None),
     },
     "Warning": {
         "code": ("", None),
