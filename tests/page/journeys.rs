@@ -129,8 +129,8 @@ async fn loop_a_file_of_a_bench_becomes_the_coefficient_of_friction_and_a_contac
     browser.click("#compute-loop").await;
     browser.says("#loop-estimates", "friction μ 0.3 (95 %").await;
 
-    // Two load cells: each is a button, and with one the lines are shown by their kinds. Another column is the load by a
-    // choice, and what was chosen before stays.
+    // Two load cells: each is a button, and with one the lines are shown by their kinds. Another column is the load by
+    // a choice, and what was chosen before stays.
     upload("tests/table_files/loop_two_load_cells.csv").await;
     browser.says("#loop-card .candidates", "Column 4: Normal force left (N)").await;
     browser.says("#loop-card .candidates", "Column 5: Normal force right (N)").await;

@@ -54,7 +54,8 @@ fn on(file: &Path, options: &[&str]) -> Service {
 }
 
 /// Requests that go on for most of an hour (a file, for seconds) unless they are stopped, by the kind of their work:
-/// each way on which a request reaches a solver. `crates/compute/tests/stops.rs` has the kinds of work that ask whether to go on.
+/// each way on which a request reaches a solver. `crates/compute/tests/stops.rs` has the kinds of work that ask whether
+/// to go on.
 fn kinds(contact: Uuid, fresh: Uuid) -> Vec<(&'static str, String)> {
     vec![
         ("a simulation", post("/simulate", &long_simulation().to_string())),

@@ -17,7 +17,7 @@ pub struct Refusal {
     /// Each fault of the request with its place.
     pub errors: Vec<Fault>,
     /// What a file may mean, each with the mapping that chooses it.
-    pub candidates: Vec<FileCandidate>,
+    pub candidates: Box<[FileCandidate]>,
     /// The cause for the log, which clients do not see.
     pub cause: Option<String>,
 }
@@ -25,7 +25,7 @@ pub struct Refusal {
 impl Refusal {
     /// A refusal of this kind, with a text of what happened.
     pub fn new(code: Code, detail: impl Into<String>) -> Refusal {
-        Refusal { code, detail: detail.into(), errors: Vec::new(), candidates: Vec::new(), cause: None }
+        Refusal { code, detail: detail.into(), errors: Vec::new(), candidates: Box::default(), cause: None }
     }
 
     /// A refusal with one place in the request.
@@ -46,7 +46,7 @@ impl Refusal {
     pub fn document(self, request_id: &str) -> ProblemDocument {
         let mapping = self.candidates.first().map(|first| first.mapping.clone());
         let document = ProblemDocument::new(self.code, self.detail, self.errors, request_id);
-        ProblemDocument { candidates: self.candidates, mapping, ..document }
+        ProblemDocument { candidates: self.candidates.into(), mapping, ..document }
     }
 }
 

@@ -20,12 +20,12 @@ const MONTHS: [&str; 12] = [
     "dec dez",
 ];
 
-/// In which order a date has its parts.
+/// With which part a date begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Order {
-    YearFirst,
-    DayFirst,
-    MonthFirst,
+    Year,
+    Day,
+    Month,
 }
 
 /// How a time is written: perhaps a date, and perhaps a time of day.
@@ -42,9 +42,9 @@ impl Format {
         let words = words.to_lowercase().replace("tt", "dd").replace('j', "y");
         let place = |letter: char| words.find(letter);
         let date = match (place('y'), place('d'), place('m')) {
-            (Some(year), Some(day), _) if year < day => Some(Order::YearFirst),
-            (Some(_), Some(day), Some(month)) if day < month => Some(Order::DayFirst),
-            (Some(_), Some(_), Some(_)) => Some(Order::MonthFirst),
+            (Some(year), Some(day), _) if year < day => Some(Order::Year),
+            (Some(_), Some(day), Some(month)) if day < month => Some(Order::Day),
+            (Some(_), Some(_), Some(_)) => Some(Order::Month),
             _ => None,
         };
         let has = |texts: &[&str]| texts.iter().any(|text| words.contains(text));
@@ -63,9 +63,9 @@ impl Format {
     /// Its words, which [`Format::parse`] reads.
     pub(super) fn words(self) -> String {
         let date = self.date.map(|order| match order {
-            Order::YearFirst => "yyyy-mm-dd",
-            Order::DayFirst => "dd/mm/yyyy",
-            Order::MonthFirst => "mm/dd/yyyy",
+            Order::Year => "yyyy-mm-dd",
+            Order::Day => "dd/mm/yyyy",
+            Order::Month => "mm/dd/yyyy",
         });
         [date, self.time].into_iter().flatten().collect::<Vec<_>>().join(" ")
     }
@@ -97,8 +97,8 @@ pub(super) fn seconds<'a>(texts: impl Iterator<Item = &'a str> + Clone, said: Op
     let Some(first) = texts.clone().find(|text| !text.is_empty()).and_then(Stamp::of) else { return Times::None };
     let dates: &[Option<Order>] = match (first.date.len(), first.is_dotted) {
         (0, _) => &[None],
-        (_, true) => &[Some(Order::YearFirst), Some(Order::DayFirst)],
-        _ => &[Some(Order::YearFirst), Some(Order::DayFirst), Some(Order::MonthFirst)],
+        (_, true) => &[Some(Order::Year), Some(Order::Day)],
+        _ => &[Some(Order::Year), Some(Order::Day), Some(Order::Month)],
     };
     let clocks: &[Option<&'static str>] = match (first.time.len(), first.date.len()) {
         (0, _) => &[None],
@@ -259,7 +259,7 @@ impl<'a> Stamp<'a> {
 
     fn days(&self, order: Order) -> Option<f64> {
         let date = match self.date.as_slice() {
-            [whole] if order == Order::YearFirst && whole.len() == 8 && whole.is_ascii() => {
+            [whole] if order == Order::Year && whole.len() == 8 && whole.is_ascii() => {
                 [&whole[..4], &whole[4..6], &whole[6..]]
             }
             [one, two, three] => [*one, *two, *three],
@@ -267,11 +267,11 @@ impl<'a> Stamp<'a> {
         };
         let named = date.iter().position(|part| month(&part.to_lowercase()).is_some());
         let places = match (order, named) {
-            (Order::YearFirst, None) if date[0].len() == 4 => [0, 1, 2],
-            (Order::DayFirst, None) if date[0].len() < 3 => [2, 1, 0],
-            (Order::MonthFirst, None) if date[0].len() < 3 => [2, 0, 1],
+            (Order::Year, None) if date[0].len() == 4 => [0, 1, 2],
+            (Order::Day, None) if date[0].len() < 3 => [2, 1, 0],
+            (Order::Month, None) if date[0].len() < 3 => [2, 0, 1],
             // A month by its name stands for itself.
-            (Order::DayFirst, Some(at)) => {
+            (Order::Day, Some(at)) => {
                 let year = (0..3)
                     .rev()
                     .find(|part| *part != at && date[*part].len() == 4)
@@ -293,7 +293,7 @@ impl<'a> Stamp<'a> {
 fn month(word: &str) -> Option<i8> {
     let begins = |names: &&str| names.split(' ').any(|name| word.starts_with(name));
     let is_word = word.chars().all(char::is_alphabetic) && word.chars().count() > 2;
-    let index = MONTHS.iter().position(|names| is_word && begins(&names))?;
+    let index = MONTHS.iter().position(|names| is_word && begins(names))?;
     i8::try_from(index + 1).ok()
 }
 

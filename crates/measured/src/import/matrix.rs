@@ -75,7 +75,7 @@ fn step(places: &[Option<f64>]) -> Option<(f64, bool)> {
         .iter()
         .enumerate()
         .all(|(index, place)| (place - all[0] - step * index as f64).abs() <= UNEVEN * step.abs());
-    let counts = is_even && (step - 1.0).abs() < 1e-9 && (all[0] == 0.0 || all[0] == 1.0);
+    let counts = is_even && (step - 1.0).abs() < 1e-9 && [0.0, 1.0].contains(&all[0]);
     (count > 2 && is_even && step != 0.0).then_some((step.abs(), counts))
 }
 

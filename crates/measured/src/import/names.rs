@@ -175,7 +175,7 @@ pub(super) fn meaning(name: &str) -> Meaning {
             let stands = |name: &str| if SHORT.contains(&name) { words.has(name) } else { words.joined.contains(name) };
             names.split_whitespace().any(stands)
         };
-        ELSEWHERE.iter().find(|(_, names)| is_in(&names)).map(|(meaning, _)| *meaning)
+        ELSEWHERE.iter().find(|(_, names)| is_in(names)).map(|(meaning, _)| *meaning)
     };
     if is_index(&words) {
         Meaning::Index

@@ -184,12 +184,12 @@ impl<'a> Sheet<'a> {
             return Err(self.no_table());
         }
         let (mut blocks, mut spoilt, mut foreign) = (vec![Block::default()], Vec::new(), Vec::new());
-        for line in 0..self.table.len() {
+        for (line, is_within) in within.into_iter().enumerate() {
             let is_later = blocks.len() > 1;
             let block = blocks.last_mut().expect("the first");
-            if !within[line] || self.table.is_comment(line) {
+            if !is_within || self.table.is_comment(line) {
                 let is_below = self.table.number(line) > *range.end();
-                let is_inside = !block.rows.is_empty() && within[line];
+                let is_inside = !block.rows.is_empty() && is_within;
                 if is_inside && !is_said && self.is_head(line) {
                     blocks.push(Block { head: line, rows: Vec::new() });
                 }

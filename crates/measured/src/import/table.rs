@@ -234,7 +234,8 @@ pub(super) fn separator(text: &str) -> Option<Separator> {
         .map(|(_, (_, line))| line.trim_matches([' ', '\u{feff}']))
         .filter(|line| !line.trim().is_empty() && !is_comment(line))
         .collect();
-    let (mut best, mut whole): (Option<(i64, Separator)>, Vec<(usize, Separator)>) = (None, Vec::new());
+    let mut best: Option<(i64, Separator)> = None;
+    let mut whole: Vec<(usize, Separator)> = Vec::new();
     let mut cells = Vec::new();
     let mut stamps;
     for separator in Separator::all(&sample) {

@@ -32,7 +32,7 @@ fn wrong_loop(found: &LoopFile, truth: &Value, more: &Value) -> Option<String> {
     {
         return Some(format!("a load of {:?}", found.load));
     }
-    let Some(dt) = more["dt"].as_f64() else { return None };
+    let dt = more["dt"].as_f64()?;
     let times = found.time.as_ref()?;
     let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let is_right = (step / dt - 1.0).abs() < 0.05 && times.is_sorted();

@@ -114,18 +114,17 @@ impl MeasuredLoop {
     }
 }
 
-/// Parts equal stamps of a clock that is coarser than the points, evenly up to the next one; the last as the ones before.
+/// Parts equal stamps of a clock that is coarser than the points, evenly up to the next one; the last as the ones
+/// before.
 fn part(times: &mut [f64]) {
-    let mut begin = 0;
-    let mut step = 0.0;
-    while begin < times.len() {
-        let count = times[begin..].partition_point(|time| *time <= times[begin]).max(1);
-        if let Some(next) = times.get(begin + count) {
-            step = (next - times[begin]) / count as f64;
+    let (mut rest, mut step) = (times, 0.0);
+    while let Some(first) = rest.first().copied() {
+        let count = rest.partition_point(|time| *time <= first).max(1);
+        let (equal, later) = rest.split_at_mut(count);
+        if let Some(next) = later.first() {
+            step = (next - first) / count as f64;
         }
-        for index in 1..count {
-            times[begin + index] = times[begin] + step * index as f64;
-        }
-        begin += count;
+        equal.iter_mut().enumerate().for_each(|(index, time)| *time = first + step * index as f64);
+        rest = later;
     }
 }

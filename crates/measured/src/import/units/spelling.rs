@@ -94,7 +94,8 @@ pub(super) fn spelling(text: &str) -> Option<String> {
 
 /// Whether a letter is one of the words of units in Cyrillic, Chinese, Japanese or Korean.
 fn is_word(letter: char) -> bool {
-    matches!(letter, 'а'..='я' | 'А'..='Я' | '\u{3040}'..='\u{30ff}' | '\u{4e00}'..='\u{9fff}' | '\u{ac00}'..='\u{d7a3}')
+    let is_cyrillic = matches!(letter, 'а'..='я' | 'А'..='Я');
+    is_cyrillic || matches!(letter, '\u{3040}'..='\u{30ff}' | '\u{4e00}'..='\u{9fff}' | '\u{ac00}'..='\u{d7a3}')
 }
 
 /// A text with the longest of some signs replaced wherever a unit may begin.
