@@ -19,7 +19,7 @@ CriticalMethod: TypeAlias = Literal["point", "line"]
 """How a critical distance L_c is used along the inward normal."""
 Direction: TypeAlias = Literal["x", "y", "z"]
 """An axis: x along the motion of the first body, z into the body asked for."""
-EndReason: TypeAlias = Literal["deleted", "expired", "stopping", "damaged", "failed"]
+EndReason: TypeAlias = Literal["deleted", "expired", "stopping", "revoked", "damaged", "failed"]
 """Why there are no more events."""
 Field: TypeAlias = Literal["pressure", "shear", "slip", "displacement"]
 """A quantity along the radius."""
@@ -41,6 +41,8 @@ LoopStart: TypeAlias = Literal["steady", "virgin"]
 """How a record begins."""
 MotionAxis: TypeAlias = Literal["x", "y"]
 """The axis of the tangential motion."""
+NoFriction: TypeAlias = Literal["no_cycle", "not_measured", "too_many_moves", "not_determined", "not_estimated"]
+"""Why the observations do not determine the friction."""
 NoLife: TypeAlias = Literal["not_positive", "too_long", "too_short", "infinite_stress"]
 """Why a value has no life."""
 PressureUnit: TypeAlias = Literal["largest", "mean"]

@@ -380,6 +380,9 @@ class FrictionReply(Result):
     friction: Record | None
     """The estimate; left out as long as the observations do not determine it."""
 
+    reason: types.NoFriction | None
+    """Why there is no estimate; left out where there is one."""
+
 
 class HistoryPage(Result):
     """A page of the history of a contact, oldest first."""

@@ -186,6 +186,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "FrictionReply": {
         "friction": ("FrictionEstimate", None),
         "id": ("", None),
+        "reason": ("", None),
         "sequence": ("", "1"),
     },
     "FrictionWork": {

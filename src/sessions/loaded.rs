@@ -8,7 +8,9 @@ use stickslip_compute::simulation::{self, bytes, present_warnings};
 use stickslip_mechanics::closed_cycles::CycleLog;
 use stickslip_wire::definition::FrictionSetup;
 use stickslip_wire::limits::Limited as _;
-use stickslip_wire::{ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, Prepare, SessionReply, Warning};
+use stickslip_wire::{
+    ContactSummary, Faults, FrictionEstimate, JsonPath, NewSession, NoFriction, Prepare, SessionReply, Warning,
+};
 
 use super::prelude::*;
 use super::published::presented;
@@ -55,8 +57,8 @@ pub(super) struct Estimated {
     pub(super) from: u64,
     /// The move that closed it.
     pub(super) to: u64,
-    /// Nothing if it was not measured, or does not determine the friction.
-    pub(super) friction: Option<FrictionEstimate>,
+    /// Or why it says nothing.
+    pub(super) friction: Result<FrictionEstimate, NoFriction>,
 }
 
 /// Values that follow from the definition and never change.

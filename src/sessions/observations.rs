@@ -10,7 +10,8 @@ use stickslip_measured::cycle_friction::{MeasuredCycle, newest_large};
 use stickslip_mechanics::closed_cycles::{ClosedCycle, CycleLog};
 use stickslip_mechanics::{in_unit, range};
 use stickslip_wire::{
-    Faults, FrictionEstimate, FrictionReply, JsonPath, Observation, ObservationsReply, ObservedMove, Rejection, limits,
+    Faults, FrictionEstimate, FrictionReply, JsonPath, NoFriction, Observation, ObservationsReply, ObservedMove,
+    Rejection, limits,
 };
 
 use super::cycles::{STATE_COST, bytes_to_read};
@@ -66,7 +67,9 @@ impl Sessions {
             live.keep_log(&log);
             live.estimated = estimated;
         }
-        Ok(FrictionReply { id, sequence, friction: estimated.and_then(|estimated| estimated.friction) })
+        let known = if seen.is_ok() { NoFriction::NoCycle } else { NoFriction::NotEstimated };
+        let friction = estimated.map_or(Err(known), |estimated| estimated.friction);
+        Ok(FrictionReply { id, sequence, friction: friction.ok(), reason: friction.err() })
     }
 
     /// What the newest cycle of a log says that is not a small one; `earlier` if it is the same cycle, or if this takes
@@ -81,13 +84,16 @@ impl Sessions {
         stop: &Arc<Part<Deadline>>,
     ) -> Result<Option<Estimated>, SessionError> {
         let Some(&ClosedCycle { from, to, .. }) = newest_large(&log.newest) else { return Ok(None) };
-        if let Some(earlier) = earlier.filter(|earlier| (earlier.from, earlier.to) == (from, to)) {
+        let is_known = |known: &Estimated| {
+            (known.from, known.to) == (from, to) && !matches!(known.friction, Err(NoFriction::NotEstimated))
+        };
+        if let Some(earlier) = earlier.filter(is_known) {
             return Ok(Some(earlier));
         }
-        let unknown = Some(Estimated { from, to, friction: None });
+        let unknown = |why| Ok(Some(Estimated { from, to, friction: Err(why) }));
         let moves = usize::try_from(to - from).unwrap_or(usize::MAX);
         if moves >= *limits::PATH_MOVES.end() {
-            return Ok(unknown);
+            return unknown(NoFriction::TooManyMoves);
         }
         let mut cycle = MeasuredCycle::default();
         let stored = to.min(log.sequence - new.len() as u64);
@@ -95,17 +101,19 @@ impl Sessions {
         while read < stored {
             let page = match self.page(id, read, stored).await {
                 // A store behind the cached state: the append that follows says so.
-                Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => return Ok(unknown),
+                Err(SessionError::Store(StoreError::Damaged { .. })) if !new.is_empty() => {
+                    return unknown(NoFriction::NotEstimated);
+                }
                 page => page?,
             };
             if !page.iter().all(|record| add(&mut cycle, record)) {
-                return Ok(unknown);
+                return unknown(NoFriction::NotMeasured);
             }
             read += page.len() as u64;
         }
         let mut rest = new.iter().filter(|record| (from..=to).contains(&record.sequence));
         if !rest.all(|record| add(&mut cycle, record)) {
-            return Ok(unknown);
+            return unknown(NoFriction::NotMeasured);
         }
         let (virgin, stop) = (virgin.clone(), Arc::clone(stop));
         let fit = move || cycle.friction(virgin, &|| stop.check().is_ok());
@@ -113,10 +121,10 @@ impl Sessions {
         Ok(match friction {
             Ok(friction) => {
                 let friction = friction.map(|(value, interval)| FrictionEstimate { value, interval, from, to });
-                Some(Estimated { from, to, friction })
+                Some(Estimated { from, to, friction: friction.ok_or(NoFriction::NotDetermined) })
             }
             // The time is up.
-            Err(_) => earlier,
+            Err(_) => earlier.or(Some(Estimated { from, to, friction: Err(NoFriction::NotEstimated) })),
         })
     }
 
@@ -166,7 +174,7 @@ impl Sessions {
                 innovation: observed.innovation,
             })
         });
-        let friction = live.estimated.and_then(|estimated| estimated.friction);
+        let friction = live.estimated.and_then(|estimated| estimated.friction.ok());
         let reply = ObservationsReply { id, sequence: live.session.sequence, items: items.collect(), friction };
         self.pool.run(WRITING_COST * records.len() as u64, move || written(&reply)).await?
     }

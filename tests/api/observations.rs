@@ -15,8 +15,8 @@ use stickslip::store::{SqliteStore, Store};
 use stickslip_mechanics::Contact;
 use stickslip_wire::client::{Event, Options};
 use stickslip_wire::{
-    CreateRequest, Document as _, ForkRequest, Move, NewSession, Observation, ObservationsReply, ObservationsRequest,
-    PathRequest, Steps,
+    CreateRequest, Document as _, ForkRequest, Move, NewSession, NoFriction, Observation, ObservationsReply,
+    ObservationsRequest, PathRequest, Steps,
 };
 use uuid::Uuid;
 
@@ -124,7 +124,8 @@ async fn bad_observations_are_refused_at_their_place_and_change_nothing() {
     }
     let read = server.client.contact(id).await.unwrap();
     assert_eq!((read.sequence, exact(&read.state.displacement)), (0, exact(&0.0)));
-    assert_eq!(server.client.friction(id).await.unwrap().friction, None);
+    let unknown = server.client.friction(id).await.unwrap();
+    assert_eq!((unknown.friction, unknown.reason), (None, Some(NoFriction::NoCycle)));
 }
 
 #[tokio::test]
@@ -168,7 +169,9 @@ async fn an_estimate_needs_a_cycle_all_of_whose_moves_are_measured() {
                 last = observe(&server, id, vec![observation]).await.friction;
             }
         }
-        assert_eq!(exact(&server.client.friction(id).await.unwrap().friction), exact(&last));
+        let estimated = server.client.friction(id).await.unwrap();
+        assert_eq!(exact(&estimated.friction), exact(&last));
+        assert_eq!(estimated.reason, last.is_none().then_some(NoFriction::NotMeasured));
         let Some(found) = last else {
             assert_eq!(unmeasured, Some(50), "the whole cycle has a friction");
             continue;

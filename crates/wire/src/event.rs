@@ -40,6 +40,8 @@ pub enum EndReason {
     Expired = "expired",
     /// The server stops. After a restart, or on another server, the stream continues from `Last-Event-ID`.
     Stopping = "stopping",
+    /// The key of the client counts no longer.
+    Revoked = "revoked",
     /// The stored contact is damaged: some moves cannot be shown.
     Damaged = "damaged",
     /// The server cannot read the next move; the operator finds the cause in the log.

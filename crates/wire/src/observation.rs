@@ -74,6 +74,24 @@ pub struct FrictionReply: Copy omits Option {
     pub sequence: u64,
     /// The estimate; left out as long as the observations do not determine it.
     pub friction: Option<FrictionEstimate>,
+    /// Why there is no estimate; left out where there is one.
+    pub reason: Option<NoFriction>,
+}
+}
+
+words! {
+/// Why the observations do not determine the friction.
+pub enum NoFriction {
+    /// No cycle of eight moves has closed whose forces were measured.
+    NoCycle = "no_cycle",
+    /// The newest cycle has moves whose forces were not measured, or not under one load.
+    NotMeasured = "not_measured",
+    /// The newest cycle has too many moves.
+    TooManyMoves = "too_many_moves",
+    /// The contact sticks in its middle throughout the newest cycle, or its forces leave the friction open.
+    NotDetermined = "not_determined",
+    /// The estimate takes too long, or there is no memory for it now.
+    NotEstimated = "not_estimated",
 }
 }
 

@@ -1,18 +1,20 @@
 //! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change
 //! says who made it.
 
+use std::future::ready;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Instant;
 
-use axum::body::Body;
+use axum::body::{Body, BodyDataStream, Bytes};
 use axum::extract::{MatchedPath, Request, State};
 use axum::http::{HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
-use futures::{FutureExt as _, StreamExt as _};
+use futures::stream::{self, PollNext};
+use futures::{FutureExt as _, Stream, StreamExt as _};
 use http_body::Body as _;
-use stickslip_wire::ProblemDocument;
+use stickslip_wire::{EndEvent, EndReason, ProblemDocument};
 use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
 use uuid::Uuid;
@@ -28,6 +30,9 @@ use crate::api::request_metrics::{ABANDONED, NONE};
 use crate::api::resources::{meta, page};
 use crate::metrics::Counted;
 use crate::otlp;
+
+/// What a stream of events consists of.
+type EventBytes = Result<Bytes, axum::Error>;
 
 /// A request under way. If it is dropped before it is answered, its client has left.
 struct RequestGuard<'a> {
@@ -150,8 +155,21 @@ async fn admitted(reception: &Reception, request: Request, next: Next) -> Respon
     }
     admission.become_endless();
     let (Some(keys), Some(holder)) = (reception.keys.clone(), context.holder.clone()) else { return response };
-    let end = Box::pin(revoked(keys, holder));
-    response.map(|body| Body::from_stream(body.into_data_stream().take_until(end)))
+    response.map(|body| Body::from_stream(until_revoked(body.into_data_stream(), revoked(keys, holder))))
+}
+
+/// Events, or their beginning and a last event `end` once the key of their client counts no longer.
+fn until_revoked(events: BodyDataStream, revoked: impl Future<Output = ()>) -> impl Stream<Item = EventBytes> {
+    let last = EndEvent { reason: EndReason::Revoked };
+    let end = stream::once(async move {
+        revoked.await;
+        let data = serde_json::to_string(&last).map_err(axum::Error::new)?;
+        Ok(Bytes::from(format!("event: end\ndata: {data}\n\n")))
+    });
+    let (events, end) = (events.map(Some).chain(stream::once(ready(None))), end.map(Some));
+    // The end comes first, and nothing after it: both streams are over with their `None`.
+    let both = stream::select_with_strategy(end.chain(stream::once(ready(None))), events, |()| PollNext::Left);
+    both.take_while(|event| ready(event.is_some())).filter_map(ready)
 }
 
 fn contact_in(path: &str) -> Option<Uuid> {

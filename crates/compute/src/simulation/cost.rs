@@ -123,6 +123,20 @@ impl Work {
 /// refused before it begins.
 pub const MARGIN: u32 = 4;
 
+/// Refuses work that cannot end in time, unless it has all the time in the world.
+///
+/// # Errors
+/// [`Cause::Work`] with the estimate.
+pub fn check(cost: Nanoseconds, stop: &dyn Stop) -> Result<(), Failure> {
+    let estimate = Duration::from_nanos(cost);
+    match stop.flag().time_limit() {
+        Some(allowed) if estimate > allowed.saturating_mul(MARGIN) => {
+            Err(Failure::at("", Cause::Work { estimate, allowed }))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The cost of the search for extrema with a slip history of this many pieces.
 pub fn of_search(profile: &Profile, depth: usize) -> Nanoseconds {
     Work { depth, residual: true, ..Work::default() }.cost(profile)
@@ -172,17 +186,31 @@ fn relative_cost_of_moves(profile: &Profile) -> u64 {
     }
 }
 
+/// The cost of the moves of a simulation alone: what else it costs depends on what they leave in the slip history.
+pub fn of_moves(simulation: &Simulation) -> Nanoseconds {
+    let (moves, curved) = (simulation.plan.length(), simulation.plan.curved());
+    let exact = || Work { moves, curved, ..Work::default() }.cost(&simulation.setup.profile);
+    in_plane(simulation).unwrap_or_else(exact)
+}
+
+/// The cost of a simulation of motion in the plane.
+fn in_plane(simulation: &Simulation) -> Option<Nanoseconds> {
+    let Plan::Plane(plane) = &simulation.plan else { return None };
+    if plane.line.is_some() {
+        return None;
+    }
+    let count = if let Some(Solver::Rings(rings)) = simulation.solver { Some(rings.count) } else { None };
+    let options = rings::Options { count, tolerance: simulation.tolerance };
+    let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
+    // With a shear strength it is refused at once.
+    let setup = simulation.setup.clone().coulomb("motion in the plane");
+    Some(setup.map_or(0, |setup| of_rings(&setup, &plane.moves, &options, radii)))
+}
+
 /// The cost of a simulation.
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
-    if let Plan::Plane(plane) = &simulation.plan
-        && plane.line.is_none()
-    {
-        let count = if let Some(Solver::Rings(rings)) = simulation.solver { Some(rings.count) } else { None };
-        let options = rings::Options { count, tolerance: simulation.tolerance };
-        let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
-        // With a shear strength it is refused at once.
-        let setup = simulation.setup.clone().coulomb("motion in the plane");
-        return setup.map_or(0, |setup| of_rings(&setup, &plane.moves, &options, radii));
+    if let Some(cost) = in_plane(simulation) {
+        return cost;
     }
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());

@@ -90,6 +90,17 @@ pub enum Cause {
         /// How long work may take.
         allowed: Duration,
     },
+    /// The work cannot be done within the time limit of one request.
+    #[error(
+        "this is estimated at {:.0} s, and {} s are allowed: ask for fewer moves or places, or for less accuracy",
+        estimate.as_secs_f64(), allowed.as_secs_f64()
+    )]
+    Work {
+        /// The estimate.
+        estimate: Duration,
+        /// How long work may take.
+        allowed: Duration,
+    },
     /// The extrema cannot be found within the time limit of one request.
     #[error(
         "finding the extrema of a slip history of up to {depth} pieces is estimated at {estimate} s, and {} s are \
@@ -171,9 +182,11 @@ impl Failure {
             Cause::Scan(_) | Cause::Loops(_) | Cause::NeedsServer => Code::InvalidInput,
             Cause::MemoryFull { .. } | Cause::Lifted => Code::Conflict,
             Cause::Interrupted(Interrupted::Abandoned) => Code::Overloaded,
-            Cause::Interrupted(_) | Cause::Preparation { .. } | Cause::Search { .. } | Cause::CycleTooLarge => {
-                Code::TooMuchWork
-            }
+            Cause::Interrupted(_)
+            | Cause::Preparation { .. }
+            | Cause::Work { .. }
+            | Cause::Search { .. }
+            | Cause::CycleTooLarge => Code::TooMuchWork,
         }
     }
 }

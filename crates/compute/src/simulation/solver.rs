@@ -6,7 +6,7 @@ use stickslip_mechanics::{Error, ErrorEstimate, Move, Residual, Springs, State};
 use crate::prelude::*;
 
 /// Radii between two questions whether to go on.
-const RADII_AT_ONCE: usize = 512;
+const RADII_AT_ONCE: usize = 352;
 /// Terms between them where each radius adds up all.
 const TERMS_AT_ONCE: usize = 1 << 17;
 

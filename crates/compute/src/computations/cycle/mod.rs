@@ -131,6 +131,7 @@ impl OnContact for CycleTask {
     }
 
     fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
+        cost::check(OnContact::cost(&self, contact.profile(), 0), stop)?;
         SteadyCycles::of(contact.without_history(), self, Timer::start(stop), stop)
     }
 }
