@@ -302,8 +302,11 @@ impl Contact {
         match self.history.slip_from() {
             None => (self.contact_radius(), Regime::Stick),
             Some(start) if start.level.value() <= 0.0 => (0.0, Regime::GrossSlip),
-            Some(start) if start.square < edge.square => (self.indenter.edge_radius(start), Regime::PartialSlip),
-            Some(_) => (self.contact_radius(), Regime::Stick),
+            // A ring that is narrower than the last digit of its radii is none that a reader could see.
+            Some(start) => {
+                let (inner, outer) = (self.indenter.edge_radius(start), self.contact_radius());
+                if inner < outer { (inner, Regime::PartialSlip) } else { (outer, Regime::Stick) }
+            }
         }
     }
 }

@@ -7,23 +7,60 @@
 
 use crate::contact::Contact;
 use crate::contact::normal::load;
+use crate::numerics::chebyshev::{self, Points, TWENTY_FOUR};
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Ring;
 
+/// Halvings of a piece of the first loading curve, and points in all: beyond, the curve is evaluated itself.
+const HALVINGS: usize = 30;
+const MOST_POINTS: usize = 12_000;
+/// A series whose last terms are below this part of the largest has all its digits.
+const RESOLVED: f64 = 2e-15;
+
 /// The first loading curve of a contact at its present load, whatever its history.
-#[derive(Clone, Copy, Debug)]
+///
+/// A motion asks for it a million times: F/U is held as Chebyshev series over pieces that are halved until each is
+/// resolved, which keeps the digits of small displacements too.
+#[derive(Clone, Debug)]
 pub(super) struct FirstLoading<'a> {
     contact: &'a Contact,
     /// Displacement of gross slip, m.
     gross_slip: f64,
     /// Force of gross slip mu F_N, N.
     pub(super) limit: f64,
+    pieces: Vec<Piece>,
+}
+
+/// A piece of the curve.
+#[derive(Clone, Debug)]
+struct Piece {
+    /// Displacements, m.
+    from: f64,
+    to: f64,
+    /// Of F/U, N/m; none where no piece is short enough.
+    series: Option<Vec<f64>>,
 }
 
 impl<'a> FirstLoading<'a> {
     pub(super) fn new(contact: &'a Contact) -> FirstLoading<'a> {
         let gross_slip = contact.unscaled(contact.history.edge().level).value().max(0.0);
-        FirstLoading { contact, gross_slip, limit: contact.friction * contact.normal_force }
+        let limit = contact.friction * contact.normal_force;
+        let mut curve = FirstLoading { contact, gross_slip, limit, pieces: Vec::new() };
+        let (mut open, mut points) = (vec![(0.0, gross_slip, 0)], 0);
+        while let Some((from, to, halvings)) = open.pop() {
+            points += TWENTY_FOUR.places(from, to).len();
+            let terms = TWENTY_FOUR.terms(&TWENTY_FOUR.places(from, to).map(|at| curve.exact(at) / at));
+            let series = chebyshev::counted(&terms, RESOLVED);
+            if Points::<24>::resolve(series) {
+                curve.pieces.push(Piece { from, to, series: Some(series.to_vec()) });
+            } else if halvings < HALVINGS && points < MOST_POINTS {
+                let middle = from.midpoint(to);
+                open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
+            } else {
+                curve.pieces.push(Piece { from, to, series: None });
+            }
+        }
+        curve
     }
 
     /// The force at a displacement from rest, N.
@@ -34,6 +71,15 @@ impl<'a> FirstLoading<'a> {
         if displacement <= 0.0 {
             return 0.0;
         }
+        let piece = &self.pieces[self.pieces.partition_point(|piece| piece.to <= displacement)];
+        let Some(series) = &piece.series else { return self.exact(displacement) };
+        let [stiffness] =
+            chebyshev::values(series, [2.0 * (displacement - piece.from) / (piece.to - piece.from) - 1.0]);
+        stiffness * displacement
+    }
+
+    /// The force, N, at a displacement above zero that does not slide, m.
+    fn exact(&self, displacement: f64) -> f64 {
         let (profile, edge) = (&self.contact.indenter, *self.contact.history.edge());
         let inner = profile.point(edge.level - self.contact.scaled(DoubleDouble::from(displacement)));
         self.contact.force_unit() * load(profile, &Ring::between(inner, edge))

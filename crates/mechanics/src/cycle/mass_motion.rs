@@ -42,7 +42,7 @@ pub(super) enum Unfinished {
 
 /// The mass, its drive and its contact.
 pub(super) struct DrivenMass<'a> {
-    pub(super) loading: FirstLoading<'a>,
+    pub(super) loading: &'a FirstLoading<'a>,
     /// Of the drive, Hz.
     pub(super) frequency: f64,
     /// P, N.
@@ -92,8 +92,8 @@ impl Motion {
     /// At rest at a displacement that was reached by a first loading, m.
     pub(super) fn at_rest(mass: &DrivenMass<'_>, displacement: f64, angle: f64) -> Motion {
         let mut branch = MasingLoop::virgin();
-        if mass.drive_force * angle.cos() < branch.force(&mass.loading, displacement) {
-            branch.turn(&mass.loading, displacement);
+        if mass.drive_force * angle.cos() < branch.force(mass.loading, displacement) {
+            branch.turn(mass.loading, displacement);
         }
         let (speed, sums, error, extremes) = (0.0, [0.0; ROWS - 2], [0.0; 2], [None; 2]);
         Motion { angle, displacement, speed, branch, sums, error, extremes }
@@ -176,7 +176,7 @@ impl DrivenMass<'_> {
         }
         let closing = motion.branch.closes_at();
         let mut reached = None;
-        for level in [motion.branch.slides_at(&self.loading), closing] {
+        for level in [motion.branch.slides_at(self.loading), closing] {
             let before = direction * (motion.displacement - level);
             let after = before + direction * trial.change[0];
             if before < 0.0 && after > 0.0 {
@@ -196,7 +196,7 @@ impl DrivenMass<'_> {
             None if turned => {
                 motion.speed = 0.0;
                 motion.note_turn(direction > 0.0);
-                motion.branch.turn(&self.loading, motion.displacement);
+                motion.branch.turn(self.loading, motion.displacement);
             }
             _ => {}
         }
@@ -222,7 +222,7 @@ impl DrivenMass<'_> {
 
     /// A step of this length on the present branch.
     fn step(&self, motion: &Motion, length: f64) -> MotionTrial {
-        let force = |displacement: f64| motion.branch.force(&self.loading, displacement);
+        let force = |displacement: f64| motion.branch.force(self.loading, displacement);
         let acceleration = |cos: f64, force: f64| (self.drive_force * cos - force) / self.inertia;
         let integrands = |displacement: f64, force: f64, [c, s, c3, s3]: [f64; 4]| {
             [displacement * c, displacement * s, force * c, force * s, force * c3, force * s3]

@@ -101,10 +101,11 @@ impl Resonator {
             stopped.set(stopped.get() || !keep_going());
             !stopped.get()
         };
+        let loading = FirstLoading::new(contact);
         let respond = |&frequency: &f64| {
             keep_going().then_some(())?;
             let mass = DrivenMass {
-                loading: FirstLoading::new(contact),
+                loading: &loading,
                 frequency,
                 drive_force: self.drive_force,
                 inertia: self.mass * (TAU * frequency).powi(2),

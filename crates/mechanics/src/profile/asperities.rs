@@ -10,7 +10,7 @@
 
 use std::collections::VecDeque;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::curve_family::CurveFamily;
 use super::{Moments, Ring};
@@ -59,6 +59,8 @@ pub(super) struct Set {
     whole_cells: MomentTree,
     /// The sum of all sqrt(R), m^(1/2).
     total: f64,
+    /// int_0^h X dy, m^2, and X, m, at each gap h, once a load has been asked for.
+    at_gaps: OnceLock<Vec<[f64; 2]>>,
 }
 
 /// An interval of levels, m.
@@ -128,7 +130,8 @@ impl Set {
     fn new(gaps: Vec<f64>, roots: Vec<f64>, keep_going: &dyn Fn() -> bool) -> Result<Set, Error> {
         let cells = cells(&gaps, &roots, keep_going).ok_or(Error::Interrupted)?;
         let total = roots.iter().sum();
-        let mut set = Set { gaps, roots, cells, whole_cells: MomentTree::new([].into_iter()), total };
+        let at_gaps = OnceLock::new();
+        let mut set = Set { gaps, roots, cells, whole_cells: MomentTree::new([].into_iter()), total, at_gaps };
         let whole = |cell: &LevelCell| {
             let depth = cell.high - cell.low;
             (set.moments_within(Some(cell), cell.low.into(), cell.high.into(), depth), depth)
@@ -242,20 +245,31 @@ impl Set {
         [first, width]
     }
 
-    /// The level at which a function that rises from zero, given with its slope, has this value; `least` is that
-    /// level without gaps.
-    fn invert(&self, target: f64, least: f64, value: impl Fn(&Set, DoubleDouble) -> [f64; 2]) -> f64 {
+    fn at_gaps(&self) -> &[[f64; 2]] {
+        self.at_gaps.get_or_init(|| self.gaps.iter().map(|&gap| self.load_and_radius(gap.into())).collect())
+    }
+
+    /// The level above the last gap at which one of [`Set::at_gaps`] is below a target, where the function, given with
+    /// its slope, has this value; `least` is that level without gaps. `first` is a guess from what is known at the gap.
+    fn invert(
+        &self,
+        (target, least): (f64, f64),
+        known: impl Fn(&[f64; 2]) -> f64,
+        first: impl Fn(&[f64; 2]) -> f64,
+        value: impl Fn(&Set, DoubleDouble) -> [f64; 2],
+    ) -> f64 {
         if target <= 0.0 {
             return 0.0;
         }
         // Between two gaps it is smooth.
-        let gaps = &self.gaps;
-        let index = gaps.partition_point(|&gap| value(self, gap.into())[0] < target);
-        let base = gaps[index.saturating_sub(1)];
+        let (gaps, at_gaps) = (&self.gaps, self.at_gaps());
+        let index = at_gaps.partition_point(|at| known(at) < target);
+        let before = index.saturating_sub(1);
+        let base = gaps[before];
         // Beyond all gaps, no farther above the last than if all were there.
         let room = gaps.get(index).map_or(least, |next| next - base);
         let start = if least > base { least - base } else { room.min(least) };
-        base + within([0.0, room], start, |step| {
+        base + within([0.0, room], start.min(first(&at_gaps[before])), |step| {
             let [here, slope] = value(self, DoubleDouble::sum(base, step));
             (here - target, slope)
         })
@@ -351,7 +365,7 @@ impl CurveFamily for Arc<Set> {
 
     fn level_of(&self, radius: f64) -> f64 {
         let least = radius / self.total;
-        self.invert(radius, least * least, Set::radius_and_rate)
+        self.invert((radius, least * least), |[_, radius]| *radius, |_| f64::INFINITY, Set::radius_and_rate)
     }
 
     fn moments_of(&self, ring: &Ring) -> Moments {
@@ -360,6 +374,8 @@ impl CurveFamily for Arc<Set> {
 
     fn indentation_of(&self, load: f64) -> f64 {
         let least = (1.5 * load / self.total).cbrt();
-        self.invert(load, least * least, Set::load_and_radius)
+        // The load rises at least by the radius at the gap.
+        let first = |[before, radius]: &[f64; 2]| (load - before) / radius;
+        self.invert((load, least * least), |[load, _]| *load, first, Set::load_and_radius)
     }
 }

@@ -94,7 +94,9 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
         let radius = if radius * radius > 0.0 { radius } else { 0.0 };
         radius <= edge && spikes.iter().chain(&rim).any(|spike| same_number(*spike, radius))
     };
-    let spiked = |edge: f64| spikes.iter().chain(&rim).any(|spike| *spike <= edge);
+    // A contact whose ring around a flat is thinner than the last digit of its radius is one of a flat punch.
+    let flat = indenter.radius(0.0);
+    let spiked = |edge: f64| spikes.iter().chain(&rim).any(|spike| *spike <= edge) || flat > 0.0 && edge <= flat;
     let value = serde_json::to_value(reply).expect("a reply is JSON");
     let mut nulls = Vec::new();
     find_nulls(&value, String::new(), &mut nulls);
