@@ -87,7 +87,7 @@ impl Asperities {
     /// ```
     /// use stickslip_mechanics::profile::{Asperities, Profile};
     ///
-    /// let three = Profile::Asperities(Asperities::new(&[1e-4], &[0.0, 0.0, 2e-6])?);
+    /// let three = Profile::Asperities(Asperities::new(&[1e-4], &[0.0, 0.0, 2e-6])?).indenter();
     /// // At 1 um two of them carry, each like a ball: X = 2 sqrt(R d).
     /// assert!((three.radius(1e-6) - 2e-5).abs() < 1e-19);
     /// # Ok::<(), stickslip_mechanics::Error>(())

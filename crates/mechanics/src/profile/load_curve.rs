@@ -93,7 +93,8 @@ impl LoadCurve {
     ///
     /// // A spring: X does not depend on the indentation, as under a flat punch of 5 um.
     /// let bodies = Elasticity::effective(1e11, 8e10)?;
-    /// let spring = Profile::LoadCurve(LoadCurve::new(&[0.0, 1e-6, 3e-6], &[0.0, 1.0, 3.0], &bodies)?);
+    /// let spring = LoadCurve::new(&[0.0, 1e-6, 3e-6], &[0.0, 1.0, 3.0], &bodies)?;
+    /// let spring = Profile::LoadCurve(spring).indenter();
     /// assert!((spring.radius(2e-6) - 5e-6).abs() < 1e-20);
     /// # Ok::<(), stickslip_mechanics::Error>(())
     /// ```

@@ -63,7 +63,7 @@ impl LineContact {
     /// ```
     /// use stickslip_mechanics::profile::{LineContact, Profile};
     ///
-    /// let cylinder = Profile::Line(LineContact::cylinder(0.05, 0.01, Some(0.1))?);
+    /// let cylinder = Profile::Line(LineContact::cylinder(0.05, 0.01, Some(0.1))?).indenter();
     /// // Hertz: F_N = pi E* L a^2/(4 R), here over 2 E*.
     /// let load = 3.141592653589793 * 0.01 * 4e-4 * 4e-4 / (8.0 * 0.05);
     /// assert!((cylinder.contact_radius(cylinder.indentation_for(load)) / 4e-4 - 1.0).abs() < 1e-14);
