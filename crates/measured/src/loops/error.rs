@@ -41,6 +41,17 @@ pub enum Error {
         /// By how much the force is lower, N.
         difference: f64,
     },
+    /// The force is a magnitude.
+    #[error(
+        "the force looks rectified (its magnitude alone, as instruments log it beside the coefficient of friction): it \
+         never changes its sign, and is the same whichever way the displacement goes. Give the signed force: against the \
+         motion from each turn of the displacement to the next zero of the force, and with the motion from there to the \
+         next turn"
+    )]
+    Rectified {
+        /// Which record.
+        record: usize,
+    },
     /// The force is out of proportion to the load.
     #[error(
         "forces of {} N at a normal force of {} N would be a friction coefficient of {}: check the unit",

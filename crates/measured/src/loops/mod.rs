@@ -32,6 +32,7 @@ mod record;
 mod result;
 mod reversals;
 mod sampled_curve;
+mod sense;
 mod start;
 #[cfg(test)]
 mod tests;

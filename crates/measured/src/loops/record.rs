@@ -13,10 +13,6 @@ const OUTLYING: f64 = 0.02;
 const MOST_FRICTION: f64 = 10.0;
 /// How far the measured stiffness may be from that of the definition before the units are questioned.
 const MOST_STIFFNESS_RATIO: f64 = 200.0;
-/// Standard errors by which a loop that turns the wrong way is known.
-const SURELY: f64 = 5.0;
-/// Below this share of the force a loop has no width.
-const ROUNDING: f64 = 1e-9;
 /// A record may end short of a turn by this share of its last step.
 const END_SHARE: f64 = 0.5;
 /// Turns agree within this many standard deviations.
@@ -197,6 +193,9 @@ impl Branches {
         if self.half_force > MOST_FRICTION * normal_force {
             return Err(Error::ForceUnit { record: index, force: self.half_force, normal_force });
         }
+        if self.is_rectified() {
+            return Err(Error::Rectified { record: index });
+        }
         if let Some(difference) = self.wrong_way() {
             return Err(Error::WrongWay { record: index, difference });
         }
@@ -206,22 +205,6 @@ impl Branches {
             return Err(Error::StiffnessUnit { record: index, measured, expected });
         }
         Ok(())
-    }
-
-    /// By how much the force on the way up is below that on the way down, where that is sure: from the regression of
-    /// the force on displacement and direction.
-    fn wrong_way(&self) -> Option<f64> {
-        let scale = self.extremes[0].displacement - self.extremes[1].displacement;
-        let rows = || self.samples.iter().filter(|sample| sample.branch > 0 || self.start == Start::Steady);
-        let basis =
-            |sample: &Sample| nalgebra::Vector3::new(1.0, sample.displacement / scale, self.direction(sample.branch));
-        let normal: nalgebra::Matrix3<f64> = rows().map(|sample| basis(sample) * basis(sample).transpose()).sum();
-        let right: nalgebra::Vector3<f64> = rows().map(|sample| basis(sample) * sample.force).sum();
-        let inverse = normal.try_inverse()?;
-        let fitted = inverse * right;
-        let squares: f64 = rows().map(|sample| (sample.force - fitted.dot(&basis(sample))).powi(2)).sum();
-        let error = (squares / rows().count().saturating_sub(3).max(1) as f64 * inverse[(2, 2)]).sqrt();
-        (fitted[2] < -SURELY * error - ROUNDING * self.half_force).then_some(-2.0 * fitted[2])
     }
 
     /// The median over the branches of the slope of their first tenth.

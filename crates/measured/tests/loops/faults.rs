@@ -1,7 +1,7 @@
 //! What is wrong with a record is said, and outliers, noise of the displacement and excess are borne.
 
 use proptest::prelude::*;
-use stickslip_measured::loops::{Error, MOST_POINTS, Note, Parameter, Record, Start, fit};
+use stickslip_measured::loops::{Error, Known, MOST_POINTS, Note, Parameter, Record, Start, fit};
 use stickslip_mechanics::profile::{Cone, Profile};
 
 use crate::bench::{Bench, Normal, rigid};
@@ -53,6 +53,68 @@ fn a_record_that_is_no_loop_is_refused_by_what_it_lacks() {
     assert_eq!(refused(&cone, good.clone(), &[parameter]), Error::NotOfProfile { parameter });
     let stopped = fit(&bench.task(vec![good], &FREE), &|| false).unwrap_err();
     assert_eq!(stopped, Error::Interrupted);
+}
+
+/// The force of a record with its sign, from its magnitude: against the motion from each turn to the next zero.
+fn signed(record: &Record) -> Record {
+    let Record { displacement, force, .. } = record;
+    let rises: Vec<bool> =
+        (0..force.len()).map(|place| displacement[place.max(1)] > displacement[place.max(1) - 1]).collect();
+    let largest = force.iter().copied().fold(0.0, f64::max);
+    let mut signed = Vec::with_capacity(force.len());
+    for branch in rises.chunk_by(|one, next| one == next) {
+        let forces = &force[signed.len()..signed.len() + branch.len()];
+        let least = (0..forces.len()).min_by(|a, b| forces[*a].total_cmp(&forces[*b])).unwrap();
+        let zero = if forces[least] < 0.3 * largest { least } else { 0 };
+        let sign = |place: usize| if branch[0] == (place >= zero) { 1.0 } else { -1.0 };
+        signed.extend(forces.iter().enumerate().map(|(place, force)| sign(place) * force));
+    }
+    Record { force: signed, ..record.clone() }
+}
+
+/// Tribometers log the magnitude of the force beside the coefficient of friction. With its sign it is fitted as the loop
+/// is, and a loop of one sign, by an offset, is no magnitude.
+#[test]
+fn a_rectified_force_is_refused_and_fitted_with_its_sign() {
+    for seed in 0..24 {
+        let mut random = fastrand::Rng::with_seed(seed);
+        let bench = Bench {
+            compliance: [0.0, 3e-8][random.usize(..2)],
+            offsets: [random.f64() * 1e-7, 0.1 * random.f64()],
+            ..Bench::default()
+        };
+        let reach = [0.4, 0.8, 1.2, 2.0, 5.0, 60.0][random.usize(..6)];
+        let amplitude = reach * bench.gross_slip();
+        let mut loop_of = if random.bool() { bench.virgin(amplitude, 600, 2.25) } else { bench.steady(amplitude, 400) };
+        let largest = loop_of.force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let size = largest * [0.0, 0.005, 0.02][random.usize(..3)];
+        let mut normal = Normal(fastrand::Rng::with_seed(seed));
+        loop_of.force.iter_mut().for_each(|force| *force += size * normal.next());
+        let fitted = |record: Record| {
+            let mut task = bench.task(vec![record], &FREE);
+            task.known = vec![Known { value: bench.compliance, ..rigid() }];
+            fit(&task, &|| true)
+        };
+        let expected = fitted(loop_of.clone()).unwrap();
+        for sign in [1.0, -1.0] {
+            let magnitude = loop_of.force.iter().map(|force| sign * force.abs()).collect();
+            let error =
+                fitted(Record { force: magnitude, ..loop_of.clone() }).map(|found| found.estimates).unwrap_err();
+            assert_eq!(error, Error::Rectified { record: 0 }, "seed {seed}, {reach}, {size}");
+            assert!(error.to_string().contains("Give the signed force"));
+        }
+        let magnitude = Record { force: loop_of.force.iter().map(|force| force.abs()).collect(), ..loop_of.clone() };
+        let found = fitted(signed(&magnitude)).unwrap();
+        for (found, expected) in found.estimates.iter().zip(&expected.estimates) {
+            let near = 2.0 * expected.standard_error.unwrap() + 0.02 * expected.value;
+            assert!((found.value - expected.value).abs() < near, "seed {seed}: {found:?} {expected:?}");
+        }
+        // A loop of one sign, beside zero or far from it, with noise of a third of the loop.
+        let lift = [1.0, 1.2, 4.0][random.usize(..3)] * largest;
+        let lifted = loop_of.force.iter().map(|force| force + lift + largest / 6.0 * normal.next()).collect();
+        let fitted = fitted(Record { force: lifted, ..loop_of.clone() });
+        assert!(!matches!(fitted, Err(Error::Rectified { .. })), "seed {seed}: {lift}");
+    }
 }
 
 /// One point in fifty is anywhere.

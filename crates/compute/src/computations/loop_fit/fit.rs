@@ -67,9 +67,10 @@ fn place(error: &Error, free: &[FitParameter], units: FitUnits, has_friction: bo
     };
     let position = |parameter: Parameter| free.iter().position(|name| of(*name) == parameter);
     match *error {
-        Error::TooFewPoints { record } | Error::ConstantForce { record } | Error::WrongWay { record, .. } => {
-            of_record(record, "force")
-        }
+        Error::TooFewPoints { record }
+        | Error::ConstantForce { record }
+        | Error::Rectified { record }
+        | Error::WrongWay { record, .. } => of_record(record, "force"),
         Error::SingleBranch { record } | Error::ConstantDisplacement { record } => of_record(record, "displacement"),
         Error::ForceUnit { record, .. } => of_unit(units.force.is_some(), record, "force"),
         Error::StiffnessUnit { record, .. } => of_unit(units.displacement.is_some(), record, "displacement"),
