@@ -102,6 +102,8 @@ impl MeasuredLoop {
                 if let Some(index) = time.windows(2).position(|pair| pair[1] < pair[0]) {
                     let detail = "earlier than the time before it: give the points in the order of time";
                     faults.add(at.member("time").index(index.saturating_add(1)), detail);
+                } else if time.len() > 1 && time.first() == time.last() {
+                    faults.add(at.member("time"), "the same at all points: give the time of each, or leave it out");
                 }
             }
             None if drifts => faults.add(at.member("time"), "give the time of each point, or leave `drift` out"),
@@ -126,5 +128,69 @@ fn part(times: &mut [f64]) {
         }
         equal.iter_mut().enumerate().for_each(|(index, time)| *time = first + step * index as f64);
         rest = later;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MeasuredLoop, part};
+    use crate::check::{Faults, JsonPath};
+
+    /// The times after the check, or the first fault.
+    fn checked(time: &[f64]) -> Result<Vec<f64>, String> {
+        let numbers = vec![1.0; time.len()];
+        let mut measured = MeasuredLoop {
+            displacement: numbers.clone(),
+            force: numbers,
+            time: Some(time.to_vec()),
+            normal_force: None,
+            start: None,
+            weight: None,
+        };
+        let mut faults = Faults::default();
+        measured.check([1e-6, 1.0], true, JsonPath::Root, &mut faults);
+        faults.none_within(JsonPath::Root).ok_or_else(|| format!("{faults:?}"))?;
+        Ok(measured.time.unwrap_or_default())
+    }
+
+    #[test]
+    fn equal_stamps_are_parted_evenly_up_to_the_next_and_the_last_as_those_before() {
+        for (time, expected) in [
+            (vec![0.0, 1.0, 1.0, 2.0], vec![0.0, 1.0, 1.5, 2.0]),
+            (vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0], vec![0.0, 0.25, 0.5, 0.75, 1.0, 1.25]),
+            (vec![-3.0, -1.0, 2.0], vec![-3.0, -1.0, 2.0]),
+            (vec![5.0, 6.0, 6.0, 6.0], vec![5.0, 6.0, 7.0, 8.0]),
+        ] {
+            assert_eq!(checked(&time).unwrap(), expected, "{time:?}");
+        }
+        assert!(checked(&[0.0, 1.0, 0.5]).unwrap_err().contains("earlier than the time before it"));
+        assert!(checked(&[2.0, 2.0, 2.0]).unwrap_err().contains("the same at all points"));
+    }
+
+    /// Stamps that do not fall become times that do not fall, each between its stamp and the next one, whatever the step
+    /// of the clock: all records of up to seven points of a clock with five stamps.
+    #[test]
+    fn parted_stamps_keep_their_order_and_their_place() {
+        let mut records: Vec<Vec<f64>> = vec![Vec::new()];
+        for _ in 0..7 {
+            let longer = |record: &Vec<f64>| {
+                let last: f64 = record.last().copied().unwrap_or(0.0);
+                let next = [0.0, 1.0, 2.0, 3.0, 4.0].into_iter().filter(move |next| *next >= last);
+                let record = record.clone();
+                next.map(move |next| [record.clone(), vec![next]].concat()).collect::<Vec<_>>()
+            };
+            records = records.iter().flat_map(longer).collect();
+            for (record, step) in records.iter().flat_map(|record| [1e-3, 1.0, 3600.1, 1e9].map(|step| (record, step)))
+            {
+                let stamps: Vec<f64> = record.iter().map(|stamp| stamp * step).collect();
+                let mut times = stamps.clone();
+                part(&mut times);
+                assert!(times.is_sorted(), "{stamps:?}: {times:?}");
+                for (stamp, time) in stamps.iter().zip(&times) {
+                    let next = stamps.iter().find(|next| *next > stamp).copied().unwrap_or(f64::INFINITY);
+                    assert!((*stamp..next).contains(time), "{stamps:?}: {times:?}");
+                }
+            }
+        }
     }
 }
