@@ -40,13 +40,29 @@ fn time() -> Kind<UnitHint> {
 }
 /// A column by its name or number.
 const COLUMN: Characters = Characters(100);
-/// A mapping, of so many bytes at most.
+/// A mapping, of so many characters at most.
 const MAPPING: usize = 2000;
+/// Its entries with the units of the document; other units of the table and other separators are taken too.
+const ENTRIES: [&str; 10] = [
+    r#"(displacement|x|z):[^:;"\s][^:;"]*(:(m|cm|mm|um|nm))?"#,
+    r#"y:(none|[^:;"\s][^:;"]*(:(m|cm|mm|um|nm))?)"#,
+    r#"force:[^:;"\s][^:;"]*(:(N|mN|uN|kN))?"#,
+    r#"time:(none|[^:;"\s][^:;"]*(:(s|ms|us|min|h|mm:ss|hh:mm|hh:mm:ss))?)"#,
+    "load:(none|[1-9][0-9]{0,4} (N|mN|uN|kN)|[1-9][0-9]{0,3}(:(N|mN|uN|kN))?)",
+    "(lateral|height):(m|cm|mm|um|nm)",
+    "(first_line|last_line|first_column|last_column|table):[1-9][0-9]{0,6}",
+    r#"spacing:[1-9][0-9]{0,6}(\.[0-9]{1,9})?(:[1-9][0-9]{0,6}(\.[0-9]{1,9})?)?"#,
+    r#"sheet:[^:;"\s][^:;"]*"#,
+    "(separator:(semicolon|tab|comma|pipe|white_space|colon)|decimal:(point|comma))",
+];
 fn mapping() -> Kind<Mapping> {
-    let schema = || json!({"type": "string", "maxLength": MAPPING, "pattern": "^([a-z_]+:[^;]+;?)*$"});
-    let read = |text: &str| match text.len() {
+    let schema = || {
+        let entry = ENTRIES.join("|");
+        json!({"type": "string", "maxLength": MAPPING, "pattern": format!("^(({entry})(;({entry}))*)?$")})
+    };
+    let read = |text: &str| match text.chars().count() {
         ..=MAPPING => Mapping::parse(text).map_err(|error| format!("a mapping: {error}")),
-        _ => Err(format!("a text of at most {MAPPING} bytes")),
+        _ => Err(format!("a text of at most {MAPPING} characters")),
     };
     Kind::of(read, schema)
 }
