@@ -94,3 +94,43 @@ fn any_sign_may_separate_columns_with_decimal_commas_and_dates() {
         assert!(Mapping::parse(&found.preview.mapping).is_ok(), "{sign:?}: {}", found.preview.mapping);
     }
 }
+
+/// Between colons numbers look like times of day: the line of names says how many there are.
+#[test]
+fn colons_separate_numbers_that_look_like_times() {
+    let angle = |row: usize| std::f64::consts::TAU * row as f64 / 24.0;
+    let cells = |row: usize| [12.0 + 6.0 * angle(row).cos(), 30.0 + 20.0 * angle(row).sin(), row as f64];
+    for (names, digits, count, has_time) in [
+        ("Displacement (nm):Force (mN)", 0, 2, false),
+        ("Displacement (nm):Force (mN)", 2, 2, false),
+        ("Displacement (nm):Force (mN):Time (s)", 0, 3, true),
+        ("Displacement:Force:Time\nnm:mN:s", 2, 3, true),
+    ] {
+        for mark in [".", ","] {
+            let cell = |value: &f64| format!("{value:0width$.digits$}", width = 2).replace('.', mark);
+            let row = |row: usize| cells(row)[..count].iter().map(cell).collect::<Vec<_>>().join(":");
+            let text = format!("{names}\n{}\n", (0..24).map(row).collect::<Vec<_>>().join("\n"));
+            let found = read_loop(text.as_bytes(), &Mapping::default(), &|| true);
+            let found = found.unwrap_or_else(|error| panic!("{error}\n{text}"));
+            assert_eq!(found.displacement.len(), 24, "{text}");
+            for place in 0..24 {
+                let [u, f, time] = cells(place);
+                let near = 0.51 * 10_f64.powi(-(digits as i32));
+                assert!(
+                    (found.displacement[place] - u).abs() < near && (found.force[place] - f).abs() < near,
+                    "{text}"
+                );
+                assert!(found.time.as_ref().is_none_or(|times| (times[place] - time).abs() < 1e-9), "{text}");
+            }
+            assert_eq!(found.time.is_some(), has_time, "{text}");
+        }
+    }
+    // Times of day between colons are three columns, and the others can still be chosen.
+    let row = |row: usize| format!("14:15:{row:02}:{:.2}:{:.2}", cells(row)[0], cells(row)[1]);
+    let text = format!("Time:Displacement (nm):Force (mN)\n{}\n", (0..24).map(row).collect::<Vec<_>>().join("\n"));
+    let error = read_loop(text.as_bytes(), &Mapping::default(), &|| true).unwrap_err();
+    assert!(error.to_string().contains("mapping=displacement:2"), "{error}");
+    let mapping = Mapping::parse("displacement:4:nm;force:5:mN;time:3:s").unwrap();
+    let found = read_loop(text.as_bytes(), &mapping, &|| true).unwrap();
+    assert_eq!((found.displacement[0..1].to_vec(), found.time.unwrap()[23..].to_vec()), (vec![18.0], vec![23.0]));
+}

@@ -2,7 +2,8 @@
 //! figures and second tables below, two channels of the load, times in several formats. What is read is right, and a
 //! refusal has a way out that leads to what is right.
 //!
-//! `STICKSLIP_TEST_CASES=20000 cargo test --release -p stickslip-measured --test files made` is the long run.
+//! `STICKSLIP_TEST_CASES=20000 cargo test --locked --workspace --test files made -- --nocapture` is the long run, and
+//! prints how many of the files that leave nothing open were read.
 
 use std::cell::Cell;
 
