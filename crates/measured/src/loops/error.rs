@@ -43,10 +43,10 @@ pub enum Error {
     },
     /// The force is a magnitude.
     #[error(
-        "the force looks rectified (its magnitude alone, as instruments log it beside the coefficient of friction): it \
-         never changes its sign, and is the same whichever way the displacement goes. Give the signed force: against the \
-         motion from each turn of the displacement to the next zero of the force, and with the motion from there to the \
-         next turn"
+        "the force looks rectified (its magnitude alone, as instruments log it beside the coefficient of friction): \
+         it never changes its sign, and is the same whichever way the displacement goes. Give the signed force: \
+         against the motion from each turn of the displacement to the next zero of the force, and with the motion \
+         from there to the next turn"
     )]
     Rectified {
         /// Which record.

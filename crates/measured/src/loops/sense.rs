@@ -1,5 +1,5 @@
-//! The sense of a record: how its force depends on displacement and direction, which tells swapped columns, a wrong sign
-//! and a force without its sign.
+//! The sense of a record: how its force depends on displacement and direction, which tells swapped columns, a wrong
+//! sign and a force without its sign.
 
 use nalgebra::{Matrix3, Vector3};
 

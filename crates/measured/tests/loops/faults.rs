@@ -72,8 +72,8 @@ fn signed(record: &Record) -> Record {
     Record { force: signed, ..record.clone() }
 }
 
-/// Tribometers log the magnitude of the force beside the coefficient of friction. With its sign it is fitted as the loop
-/// is, and a loop of one sign, by an offset, is no magnitude.
+/// Tribometers log the magnitude of the force beside the coefficient of friction. With its sign it is fitted as the
+/// loop is, and a loop of one sign, by an offset, is no magnitude.
 #[test]
 fn a_rectified_force_is_refused_and_fitted_with_its_sign() {
     for seed in 0..24 {

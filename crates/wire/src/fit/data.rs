@@ -167,8 +167,8 @@ mod tests {
         assert!(checked(&[2.0, 2.0, 2.0]).unwrap_err().contains("the same at all points"));
     }
 
-    /// Stamps that do not fall become times that do not fall, each between its stamp and the next one, whatever the step
-    /// of the clock: all records of up to seven points of a clock with five stamps.
+    /// Stamps that do not fall become times that do not fall, each between its stamp and the next one, whatever the
+    /// step of the clock: all records of up to seven points of a clock with five stamps.
     #[test]
     fn parted_stamps_keep_their_order_and_their_place() {
         let mut records: Vec<Vec<f64>> = vec![Vec::new()];
