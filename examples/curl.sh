@@ -5,11 +5,11 @@ service=${1:-http://localhost:8080}
 
 post() { curl -sSf "$service$1" -H 'content-type: application/json' -d "$2"; }
 
-# A steel ball of 10 mm radius on a rigid plane, under 10 N.
+# A steel ball of 10 mm radius on a steel plane, under 10 N.
 made=$(post /contacts '{
   "label": "from a shell",
   "profile": {"type": "sphere", "radius": 0.01},
-  "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+  "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}]},
   "friction": 0.3,
   "preload": {"normal_force": 10.0}
 }')

@@ -9,7 +9,8 @@ function [displacement, force] = first_contact(url)
         url = 'http://localhost:8080';
     end
     contact.profile = struct('type', 'sphere', 'radius', 0.01);
-    contact.material.bodies = {struct('youngs_modulus', 2.1e11, 'poisson_ratio', 0.3), 'rigid'};
+    steel = struct('youngs_modulus', 2.1e11, 'poisson_ratio', 0.3);
+    contact.material.bodies = {steel, steel};
     contact.friction = 0.3;
     contact.preload.normal_force = 10;
     path.displacement = 1e-7 * [linspace(0, 1, 21), linspace(0.95, -1, 40), linspace(-0.95, 1, 40)];

@@ -37,11 +37,12 @@ async function* states(id: string, after: number): AsyncGenerator<State> {
   }
 }
 
+const steel = { youngs_modulus: 2.1e11, poisson_ratio: 0.3 };
 const { id } = expect(
   await stickslip.POST("/contacts", {
     body: {
       profile: { type: "sphere", radius: 0.01 },
-      material: { bodies: [{ youngs_modulus: 2.1e11, poisson_ratio: 0.3 }, "rigid"] },
+      material: { bodies: [steel, steel] },
       friction: 0.3,
       preload: { normal_force: 10.0 },
     },

@@ -3,7 +3,7 @@
     import stickslip as ss
 
     steel = ss.Body("210 GPa", 0.3)
-    contact = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], friction=0.3, normal_force="10 N")
+    contact = ss.Contact(ss.Sphere("10 mm"), [steel, steel], friction=0.3, normal_force="10 N")
     contact.path(falling_amplitude=20)
     contact.residual().to_frame()
 

@@ -98,7 +98,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.accuracy(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     falling_amplitude={'reversals': 20},
         ... )
@@ -193,7 +193,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.cycle(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     displacement=[5e-08, 1e-07, 2e-07],
         ...     harmonics=1,
@@ -276,11 +276,11 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.fit_loop(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.2,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.2,
         ...         normal_force=10.0),
-        ...     loops=[{'displacement': [0.2583, 0.2152, 0.1722, 0.1291, 0.0861, 0.043, 0.0, -0.043, -0.0861,
-        ...         -0.1291, -0.1722, -0.2152, -0.2583, -0.2152, -0.1722, -0.1291, -0.0861, -0.043, 0.0, 0.043, 0.0861,
-        ...         0.1291, 0.1722, 0.2152, 0.2583], 'force': [3.001, 1.923, 0.888, -0.025, -0.881, -1.625, -2.231,
+        ...     loops=[{'displacement': [0.41, 0.3416, 0.2734, 0.2049, 0.1367, 0.0683, 0.0, -0.0683, -0.1367,
+        ...         -0.2049, -0.2734, -0.3416, -0.41, -0.3416, -0.2734, -0.2049, -0.1367, -0.0683, 0.0, 0.0683, 0.1367,
+        ...         0.2049, 0.2734, 0.3416, 0.41], 'force': [3.001, 1.923, 0.888, -0.025, -0.881, -1.625, -2.231,
         ...         -2.733, -3.0, -2.993, -2.989, -3.0, -2.994, -1.921, -0.901, 0.031, 0.865, 1.607, 2.234, 2.732,
         ...         2.998, 2.997, 3.001, 2.987, 2.999], 'start': 'steady'}],
         ...     free=['friction', 'g_star'],
@@ -425,7 +425,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.fretting(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     crossland={'alpha': 0.3, 'life': {'s_n': {'cycles': 1000000.0, 'exponent': 8.0, 'reference':
         ...         300000000.0}}},
@@ -530,7 +530,8 @@ class Computations(ABC):
         ...         50.0, 60.0, 70.0], 'z': [-245.2, -179.7, -125.3, -79.6, -45.3, -20.4, -4.6, 0.3, -5.1, -19.8, -44.7,
         ...         -80.2, -124.9, -180.4, None]}},
         ...     load={'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
-        ...         210000000000.0}, 'rigid']}, 'preload': {'normal_force': 1.0}},
+        ...         210000000000.0}, {'poisson_ratio': 0.3, 'youngs_modulus': 210000000000.0}]}, 'preload':
+        ...         {'normal_force': 1.0}},
         ...     units={'height': 'nm', 'lateral': 'um'},
         ... )
         """
@@ -600,7 +601,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.protocols(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     reversals=20,
         ...     end='free',
@@ -822,7 +823,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.simulate(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     falling_amplitude={'reversals': 20},
         ...     residual=True,
@@ -898,7 +899,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.sliders(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     force_error=0.01,
         ... )
@@ -913,6 +914,122 @@ class Computations(ABC):
         parts: dict[str, Document] = {
         }
         return self._answer(results.SlidersReply, "/sliders", given, parts)
+
+    @overload
+    def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis],
+        outputs: str | Mapping[str, str] | Sequence[types.Output],
+        *,
+        inputs: None = None,
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.SweepReply: ...
+
+    @overload
+    def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: None = None,
+        outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
+        *,
+        inputs: Sequence[types.Input | Mapping[str, Any]],
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.UncertaintyReply: ...
+
+    @overload
+    def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
+        outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
+        *,
+        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.SweepReply | results.UncertaintyReply: ...
+
+    def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
+        outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
+        *,
+        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.SweepReply | results.UncertaintyReply:
+        """Run a sweep.
+
+        Runs `POST /simulate` for each combination of the values of up to three axes, and returns a table of the
+        outputs. A point without a result is a row of `null` and is listed among the failures. A small sweep is answered
+        at once. A large one becomes a job: 202 with the URL of the job in `Location` or, with `Accept: text/event-
+        stream`, its events. A retry with the same `Idempotency-Key` gets the numbers of the first attempt, or its job.
+        With a key, a table of more than 65536 numbers is the result of a job.
+
+        `axes` may be values by their pointers, `outputs` pointers by the names of their columns. With `inputs` in place
+        of `axes` the reply says how sure the outputs are.
+
+        Parameters
+        ----------
+        base : Mapping[str, Any]
+            The body of `POST /simulate` that each point is made from. A number that an axis sets may be left out.
+        axes : Mapping[str, Quantities] | Sequence[Axis]
+            The numbers that change.
+        outputs : str | Mapping[str, str] | Sequence[Output]
+            JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
+            point lacks the number, such as the third of two peaks, the column has `null`.
+        inputs : Sequence[Input | dict]
+            The numbers that are uncertain, in place of `axes`; the reply is then an `UncertaintyReply`.
+        job : bool
+            Run the sweep as a job even if it is small.
+        samples : int
+            Base points for `inputs`, each of which takes as many simulations as there are inputs, and two more; 1024 if
+            left out.
+        seed : int
+            The samples of two sweeps with the same seed are the same; 0 if left out.
+
+        Returns
+        -------
+        SweepReply | UncertaintyReply
+            The reply to a sweep.
+
+        Raises
+        ------
+        InvalidInput
+            With the pointer of the member that is wrong, and its range.
+
+        Examples
+        --------
+        >>> import stickslip as ss
+        >>> reply = ss.sweep(
+        ...     base={'contact': {'friction': 0.3, 'material': {'bodies': [{'poisson_ratio': 0.3, 'youngs_modulus':
+        ...         210000000000.0}, {'poisson_ratio': 0.3, 'youngs_modulus': 210000000000.0}]}, 'preload':
+        ...         {'normal_force': 10.0}, 'profile': {'radius': 0.01, 'type': 'sphere'}}, 'path':
+        ...         {'falling_amplitude': {'reversals': 20}}, 'residual': True, 'steps': 'last'},
+        ...     axes=[{'linear': {'count': 100, 'from': 1, 'to': 100}, 'pointer':
+        ...         '/path/falling_amplitude/reversals'}],
+        ...     outputs=['/residual/max'],
+        ... )
+        """
+        given: Document = {
+            "axes": axes,
+            "base": base,
+            "inputs": inputs,
+            "job": job,
+            "outputs": outputs,
+            "samples": samples,
+            "seed": seed,
+        }
+        parts: dict[str, Document] = {
+        }
+        return self._answer(results.SweepReply, "/sweep", given, parts)
 
     def wear(
         self,
@@ -959,7 +1076,7 @@ class Computations(ABC):
         --------
         >>> import stickslip as ss
         >>> reply = ss.wear(
-        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.RIGID], 0.3,
+        ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.3,
         ...         normal_force=10.0),
         ...     displacement=1e-07,
         ...     hold='indentation',
@@ -1346,6 +1463,70 @@ class AsyncComputations(ABC):
         }
         return await self._answer(results.SlidersReply, "/sliders", given, parts)
 
+    @overload
+    async def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis],
+        outputs: str | Mapping[str, str] | Sequence[types.Output],
+        *,
+        inputs: None = None,
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.SweepReply: ...
+
+    @overload
+    async def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: None = None,
+        outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
+        *,
+        inputs: Sequence[types.Input | Mapping[str, Any]],
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.UncertaintyReply: ...
+
+    @overload
+    async def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
+        outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
+        *,
+        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.SweepReply | results.UncertaintyReply: ...
+
+    async def sweep(
+        self,
+        base: Mapping[str, Any],
+        axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
+        outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
+        *,
+        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        job: bool | None = None,
+        samples: int | None = None,
+        seed: int | None = None,
+    ) -> results.SweepReply | results.UncertaintyReply:
+        """`sweep`, awaited."""
+        given: Document = {
+            "axes": axes,
+            "base": base,
+            "inputs": inputs,
+            "job": job,
+            "outputs": outputs,
+            "samples": samples,
+            "seed": seed,
+        }
+        parts: dict[str, Document] = {
+        }
+        return await self._answer(results.SweepReply, "/sweep", given, parts)
+
     async def wear(
         self,
         contact: ContactLike,
@@ -1421,7 +1602,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> state = ball.move(force="1 N").state
         """
         given: Document = {
@@ -1494,7 +1675,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> force = ball.path([5e-8, -5e-8]).force
         """
         given: Document = {
@@ -1560,7 +1741,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> left = ball.relax(8).residual.max
         """
         given: Document = {
@@ -1627,7 +1808,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> plane = ss.Plane(normal="y", offset=0, x=[-1e-4, 1e-4, 5], z=[0, 1e-4, 4])
         >>> stress = ball.subsurface(plane=plane, fields=["von_mises"]).von_mises
         """
@@ -1712,7 +1893,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> work = ball.cycle(["10 nm", "30 nm"]).dissipated_energy
         """
         given: Document = {
@@ -1854,7 +2035,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> margin = ball.fretting("50 nm", crossland={"alpha": 0.3, "limit": "300 MPa"}).margin
         """
         given: Document = {
@@ -1935,7 +2116,7 @@ class OfContact(ABC):
         --------
         >>> import stickslip as ss
         >>> steel = ss.Body("210 GPa", 0.3)
-        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")
+        >>> ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")
         >>> shear = ball.stress(200).shear
         """
         given: Document = {

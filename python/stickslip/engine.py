@@ -72,7 +72,7 @@ def answer(kind: type[T], reply: Document, contact: Any, request: Mapping[str, A
     definition = request.get("contact", {})
     seen = contact._warned if isinstance(contact, DefinedContact) else seen_of(definition) if definition else set()
     warn(reply.get("warnings", ()), seen)
-    found: type[T] = _in_plane(reply) or kind
+    found: type[T] = _other_shape(reply) or kind
     curve = SimulatedCurve(request) if found is results.SimulateReply else None
     return parse(found, reply, curve=curve, **context_of(definition, request))
 
@@ -96,8 +96,10 @@ def path_of(name: str) -> str:
     return PATHS[name]
 
 
-def _in_plane(reply: Document) -> Any:
-    """The class of the reply of a simulation whose states have pairs."""
+def _other_shape(reply: Document) -> Any:
+    """The class of a reply of another shape: in the plane, where states have pairs, or of uncertain inputs."""
+    if isinstance(reply.get("outputs"), list):
+        return results.UncertaintyReply
     steps = reply.get("steps")
     pairs = isinstance(steps, list) and bool(steps) and isinstance(steps[0].get("displacement"), list)
     return results.PlanarReply if pairs else None

@@ -14,6 +14,7 @@ protocols = _local.protocols
 rolling = _local.rolling
 simulate = _local.simulate
 sliders = _local.sliders
+sweep = _local.sweep
 wear = _local.wear
 
 __all__ = [
@@ -28,5 +29,6 @@ __all__ = [
     "rolling",
     "simulate",
     "sliders",
+    "sweep",
     "wear",
 ]

@@ -121,5 +121,6 @@ METHODS: dict[str, str] = {
     "/rolling": "rolling",
     "/simulate": "simulate",
     "/sliders": "sliders",
+    "/sweep": "sweep",
     "/wear": "wear",
 }

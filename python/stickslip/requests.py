@@ -123,7 +123,8 @@ def _sweep(given: Document) -> Document:
         base["path"] = {member: _object(member, value) for member, value in base["path"].items()}
     if "contact" in base:
         base["contact"] = definition(base["contact"])
-    return given | {"base": base, "axes": axes(given["axes"]), "outputs": outputs(given["outputs"])}
+    listed = {name: read(given[name]) for name, read in (("axes", axes), ("outputs", outputs)) if name in given}
+    return given | {"base": base} | listed
 
 
 _SPECIAL = {

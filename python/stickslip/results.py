@@ -1297,6 +1297,45 @@ class SubsurfaceReply(Result):
     """Normal stress along z, Pa; tension is positive."""
 
 
+class SweepReply(Swept):
+    """The table of a sweep: one row for each point."""
+
+    columns: dict[str, Floats]
+    """The columns by their names or pointers: the axes, then the outputs, in the unit of the field; `null` where a
+    point lacks the number or has no result.
+    """
+
+    failed: int
+    """Number of points without a result."""
+
+    failures: Rows[Record]
+    """The first points without a result."""
+
+    points: int
+    """Number of points, which is the length of each column."""
+
+
+class UncertaintyReply(Result):
+    """What uncertain inputs mean for the outputs of a simulation (GUM, supplement 1)."""
+
+    failed: int
+    """Number of points without a result: where a number is out of the range of its field, for example. The numbers
+    above are those of the other points.
+    """
+
+    failures: Rows[Record]
+    """The first points without a result."""
+
+    outputs: Rows[Record]
+    """The outputs."""
+
+    points: int
+    """Number of points."""
+
+    warnings: Rows[Record]
+    """Warnings about the result."""
+
+
 class WearReply(Result):
     """The limit that wear approaches in a contact."""
 
@@ -1377,5 +1416,7 @@ NAMES = [
     "StateEvent",
     "StressReply",
     "SubsurfaceReply",
+    "SweepReply",
+    "UncertaintyReply",
     "WearReply",
 ]

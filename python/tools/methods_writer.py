@@ -16,6 +16,7 @@ from openapi_schemas import (
     members_of,
     name_of,
     operations,
+    reply_of,
     request_of,
     words_of,
 )
@@ -120,7 +121,7 @@ class Method:
         parts = ["self"]
         for name in order:
             shape = self.keywords[name][0]
-            needed = name in given or (name in self.required and name in first and name not in ("displacement",))
+            needed = name in given or (name in self.required and name in first and name not in AFTER_OPTIONAL)
             if name == order[len(first)] and len(order) > len(first):
                 parts.append("*")
             optional = "None = None" if name in absent else f"{shape} | None = None"
@@ -187,7 +188,9 @@ class Method:
             shape, said, _ = self.keywords[name]
             shape = shape.replace("types.", "").replace(" | Mapping[str, Any]", " | dict")
             lines += [f"{attribute(name)} : {shape}", *("    " + line for line in textwrap.wrap(said, 108))]
-        said = self.schemas["SimulationReply" if self.path in OVERLOADS else self.reply].get("description", self.reply)
+        said = self.schemas[reply_of(self.operation) if self.path in OVERLOADS else self.reply].get(
+            "description", self.reply
+        )
         lines += ["", "Returns", "-------", self.replies()]
         lines += ["    " + line for line in textwrap.wrap(" ".join(said.split()), 108)]
         lines += [
@@ -264,6 +267,10 @@ OVERLOADS: dict[str, list[tuple[str, tuple[str, ...], tuple[str, ...]]]] = {
         ("SimulateReply", (), ("moves", "ellipse", "path", "solver")),
         ("PlanarReply", ("ellipse",), ()),
     ],
+    "/sweep": [
+        ("SweepReply", ("axes", "outputs"), ("inputs",)),
+        ("UncertaintyReply", ("inputs",), ("axes",)),
+    ],
 }
 #: Keywords that take more than the document says.
 LOOSE = {
@@ -301,6 +308,8 @@ POSITIONAL = {
     "/contacts/{id}/relax": ["reversals"],
     "/contacts/{id}/stress": ["points"],
 }
+#: Of these, those that are required only beside others, or after one that is not.
+AFTER_OPTIONAL = ("displacement", "outputs")
 OF_DEFINITION = (
     "The contact is taken at the preload of its definition, as if it was never moved: the history and the present "
     "load of a `Contact` that has been moved do not matter."
@@ -316,7 +325,10 @@ NOTES = {
         "amplitude of a cycle, several are a path."
     ),
     ("fretting", False): OF_DEFINITION + " One displacement is the amplitude of a cycle, several are a path.",
-    ("sweep", False): "`axes` may be values by their pointers, `outputs` pointers by the names of their columns.",
+    ("sweep", False): (
+        "`axes` may be values by their pointers, `outputs` pointers by the names of their columns. With `inputs` in "
+        "place of `axes` the reply says how sure the outputs are."
+    ),
     ("fit_profile", False): "The scan may be a file that was read, a table with named columns, or arrays of x and z.",
     ("fit_loop", False): (
         OF_DEFINITION
@@ -327,7 +339,7 @@ NOTES = {
 _BALL = [
     "import stickslip as ss",
     'steel = ss.Body("210 GPa", 0.3)',
-    'ball = ss.Contact(ss.Sphere("10 mm"), [steel, ss.RIGID], 0.3, normal_force="10 N")',
+    'ball = ss.Contact(ss.Sphere("10 mm"), [steel, steel], 0.3, normal_force="10 N")',
 ]
 EXAMPLES = {
     "move": [*_BALL, 'state = ball.move(force="1 N").state'],

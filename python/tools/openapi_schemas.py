@@ -78,7 +78,8 @@ def reply_of(operation: Schema) -> str:
 def class_of(operation: Schema, schemas: Schema) -> str:
     """The schema that is the class of the reply: of replies of several shapes, the first."""
     name = reply_of(operation)
-    shapes = schemas.get(name, {}).get("anyOf", [])
+    schema = schemas.get(name, {})
+    shapes = schema.get("anyOf", []) or schema.get("oneOf", [])
     return name_of(shapes[0]) if shapes else name
 
 

@@ -23,7 +23,16 @@ from openapi_schemas import (
 #: Classes of the package that give a reply more than its fields.
 BASES = {"FrettingReply": "Fretting", "SweepReply": "Swept"}
 #: What has a class without being a reply of its own, or the first shape of one.
-PARTS = ("Accuracy", "Figures", "PlanarReply", "PlanarState", "SessionSummary", "State", "StateEvent")
+PARTS = (
+    "Accuracy",
+    "Figures",
+    "PlanarReply",
+    "PlanarState",
+    "SessionSummary",
+    "State",
+    "StateEvent",
+    "UncertaintyReply",
+)
 #: Replies that no method returns: pages of what is iterated over, files that are read in process, and jobs.
 UNSEEN = ("NewSession", "SessionPage", "LoopFileReply", "ScanFileReply", "JobReply", "JobList", "ContactDefinition")
 #: The members whose items are the rows of a table, in order of preference.

@@ -60,9 +60,10 @@ async fn a_dynamics_code_finds_the_response_of_the_service_from_its_table_of_cyc
     let rows = cells(&printed);
     assert_eq!(rows.len(), 100);
     // What CONTACT, MASS and DRIVE_FORCE of the script say.
+    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
     let contact = json!({
         "profile": {"type": "sphere", "radius": 0.01},
-        "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+        "material": {"bodies": [steel, steel]},
         "friction": 0.3,
         "preload": {"normal_force": 10.0}
     });

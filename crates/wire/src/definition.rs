@@ -132,11 +132,12 @@ object_or_string!(
 );
 
 impl ContactDefinition {
-    /// The contact of the examples in the OpenAPI document: a steel ball on a rigid plane.
+    /// The contact of the examples in the OpenAPI document: a steel ball on a steel plane.
     pub fn example() -> Value {
+        let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3});
         json!({
             "profile": {"type": "sphere", "radius": 0.01},
-            "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]},
+            "material": {"bodies": [steel, steel]},
             "friction": 0.3,
             "preload": {"normal_force": 10.0}
         })
