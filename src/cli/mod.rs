@@ -4,6 +4,7 @@ mod backup;
 mod check;
 mod command_error;
 mod compute;
+mod demo;
 mod healthcheck;
 mod io;
 mod key;
@@ -28,6 +29,7 @@ use crate::api;
 use backup::Backup;
 use check::Check;
 use compute::Compute;
+use demo::Demo;
 use healthcheck::Healthcheck;
 use io::print;
 use key::Key;
@@ -49,6 +51,8 @@ struct Cli {
 enum Command {
     /// Serve HTTP; the default command if the store exists or is named.
     Serve(Serve),
+    /// Serve contacts of every kind to look at, in memory, and open the page in a browser.
+    Demo(Demo),
     /// Print the settings of `serve` with the source of each; secrets are masked.
     Config(Serve),
     /// A computation: the body of its request from a file, and its reply.
@@ -121,7 +125,8 @@ pub fn run(arguments: Vec<OsString>) -> u8 {
 impl Command {
     fn run(self, settings: &Settings) -> Result<(), String> {
         match self {
-            Command::Serve(options) => serve::serve(options),
+            Command::Serve(options) => serve::serve(options, None),
+            Command::Demo(demo) => serve::serve(Serve::in_memory(demo.listen)?, Some(demo)),
             Command::Config(_) => print(settings),
             Command::Compute(compute) => compute.run(),
             Command::Sweep(sweep) => sweep.run(),

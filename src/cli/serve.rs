@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use axum::http::uri::Authority;
 use axum::http::{HeaderValue, Uri};
 use bytesize::ByteSize;
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{ArgAction, Args, FromArgMatches as _, ValueEnum};
 use tokio::net::TcpListener;
 use tokio::signal::unix::{Signal, SignalKind, signal};
 use tokio::sync::watch;
@@ -19,6 +19,7 @@ use tracing_subscriber::layer::SubscriberExt as _;
 use tracing_subscriber::util::SubscriberInitExt as _;
 use tracing_subscriber::{Layer as _, fmt};
 
+use super::demo::Demo;
 use super::io::print;
 use super::key;
 use super::limits::Limits;
@@ -114,6 +115,17 @@ enum LogFormat {
 }
 
 impl Serve {
+    /// The settings of a service that listens here and keeps its contacts in memory; the others are the defaults or
+    /// those of the environment.
+    ///
+    /// # Errors
+    /// A line about a variable of the environment that is wrong.
+    pub fn in_memory(listen: SocketAddr) -> Result<Serve, String> {
+        let arguments = ["serve", "--store", "memory:", "--listen", &listen.to_string()];
+        let read = Serve::augment_args(clap::Command::new("serve")).try_get_matches_from(arguments);
+        read.and_then(|matches| Serve::from_arg_matches(&matches)).map_err(|error| error.to_string())
+    }
+
     /// Without a command, checks that a store is named or exists: otherwise a file would be created wherever somebody
     /// tries the program.
     ///
@@ -131,8 +143,8 @@ impl Serve {
     }
 }
 
-/// Serves until a signal stops it.
-pub fn serve(mut options: Serve) -> Result<(), String> {
+/// Serves until a signal stops it; with the contacts of a demonstration, if there is one, and its page opened.
+pub fn serve(mut options: Serve, demo: Option<Demo>) -> Result<(), String> {
     // Work that yields to other work keeps its thread, and must leave some to the work that it yields to.
     let threads = SPARE_THREADS + options.limits.capacity().requests.min(MOST_THREADS);
     let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
@@ -174,7 +186,7 @@ pub fn serve(mut options: Serve) -> Result<(), String> {
             "starting"
         );
         let reload = reload(&options, keys, tls.clone());
-        let listening = listen(&options, access, tls, reload, Arc::clone(&store), (signals, stop.clone()));
+        let listening = listen(&options, demo, access, tls, reload, Arc::clone(&store), (signals, stop.clone()));
         runtime.block_on(listening).map(|()| Some(store))
     })();
     let end = stop.begin();
@@ -374,6 +386,7 @@ fn cannot_listen(address: SocketAddr, error: &io::Error) -> String {
 
 async fn listen(
     options: &Serve,
+    demo: Option<Demo>,
     access: Access,
     tls: Option<Tls>,
     (files, reload): (Vec<PathBuf>, impl Fn() + Send + 'static),
@@ -410,6 +423,9 @@ async fn listen(
     let capacity = usize::try_from(cache_bytes).unwrap_or(usize::MAX);
     let jobs = Jobs::new(Arc::clone(&store), pool.clone());
     let sessions = Sessions::new(Arc::clone(&store), pool.clone(), capacity);
+    if let Some(demo) = &demo {
+        demo.create_contacts(&sessions).await?;
+    }
     let working = tokio::spawn(jobs.clone().work(options.job_lease));
     tokio::spawn(sessions::run_expiry_loop(store, options.expire_after));
     tokio::spawn(reload_on_change(files, hangup, reload));
@@ -418,6 +434,9 @@ async fn listen(
     // What was said before is there when this is.
     stopping.log.finish(Instant::now() + LAST);
     print(format_args!("stickslip listens on {scheme}://{address}, the page at /, the API at /docs"))?;
+    if let Some(demo) = demo {
+        demo.open_page(&format!("{scheme}://{address}/"))?;
+    }
     let app = App { sessions, jobs, pool, access };
     api::serve_within(limiter, listener, tls, app, stop).await;
     // If the store is unreachable, other processes take over when the leases expire.

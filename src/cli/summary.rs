@@ -6,6 +6,22 @@ use stickslip_mechanics::unit_prefix;
 
 const INDENT: usize = 2;
 const NAMES: usize = 34;
+/// Columns that a table of rows begins with, those of the most interest first; the others follow by their names.
+const FIRST: [&str; 10] = [
+    "displacement",
+    "force",
+    "stick_radius",
+    "regime",
+    "dissipated_energy",
+    "displacement_amplitude",
+    "force_amplitude",
+    "secant_stiffness",
+    "loss_factor",
+    "radius",
+];
+/// Columns and rows of a table that a terminal shows; of more rows it shows the first and the last.
+const COLUMNS: usize = 6;
+const ROWS: usize = 24;
 /// Units that descriptions state, longer ones before those that they begin with.
 const UNITS: [&str; 18] = [
     "N²/m³", "W/K", "Ω·m", "N/m²", "S", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "Pa", "Hz", "kg", "N", "J", "m³", "m", "s",
@@ -44,7 +60,7 @@ impl<'a> Described<'a> {
 }
 
 /// The document of a reply to a `POST` of this path as lines: numbers with six digits and the units that the OpenAPI
-/// document states, columns by their number and range, warnings in full.
+/// document states, rows as tables, columns by their number and range, warnings in full.
 pub fn summary(reply: &Value, path: &str, document: &Value) -> String {
     let mut lines = Vec::new();
     let schema = &document["paths"][path]["post"]["responses"]["200"]["content"]["application/json"]["schema"];
@@ -70,11 +86,55 @@ fn members(described: Option<Described<'_>>, node: &Value, depth: usize, lines: 
                 lines.push(format!("{indent}{title}"));
                 members(described, &rows[0], depth + 1, lines);
             }
+            Value::Array(rows) if rows.len() > 1 && rows.iter().all(is_row) => {
+                lines.push(format!("{indent}{title}"));
+                table(described, rows, &" ".repeat((depth + 1) * INDENT), lines);
+            }
             _ => {
                 let width = NAMES.saturating_sub(indent.len());
                 let unit = described.map_or("", Described::unit);
                 lines.push(format!("{indent}{title:width$} {}", text_of(unit, value)));
             }
+        }
+    }
+}
+
+/// Whether a value is a row of a table: it has members in words or numbers.
+fn is_row(value: &Value) -> bool {
+    value.as_object().is_some_and(|members| members.values().any(is_cell))
+}
+
+fn is_cell(value: &Value) -> bool {
+    value.is_number() || value.is_string()
+}
+
+/// Rows with the same members, below their names.
+fn table(described: Option<Described<'_>>, rows: &[Value], indent: &str, lines: &mut Vec<String>) {
+    let members = rows[0].as_object().into_iter().flatten();
+    let mut names: Vec<&str> = members.filter(|(_, cell)| is_cell(cell)).map(|(name, _)| name.as_str()).collect();
+    names.sort_by_key(|name| FIRST.iter().position(|first| first == name).unwrap_or(FIRST.len()));
+    names.truncate(COLUMNS);
+    let half = ROWS / 2;
+    let shown: Vec<&Value> = match rows.len() {
+        all if all <= ROWS => rows.iter().collect(),
+        all => rows[..half].iter().chain(&rows[all - half..]).collect(),
+    };
+    let units = names.iter().map(|name| described.and_then(|part| part.member(name)).map_or("", Described::unit));
+    let columns: Vec<Vec<String>> = names
+        .iter()
+        .zip(units)
+        .map(|(name, unit)| {
+            let cells = shown.iter().map(|row| text_of(unit, &row[name]));
+            std::iter::once(name.replace('_', " ")).chain(cells).collect()
+        })
+        .collect();
+    let widths: Vec<usize> =
+        columns.iter().map(|column| column.iter().map(|cell| cell.chars().count()).max().unwrap_or(0)).collect();
+    for index in 0..=shown.len() {
+        let cells = columns.iter().zip(&widths).map(|(column, &width)| format!("{:<width$}", column[index]));
+        lines.push(format!("{indent}{}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned());
+        if index == half && shown.len() < rows.len() {
+            lines.push(format!("{indent}... {} more rows: --format csv prints all", rows.len() - shown.len()));
         }
     }
 }
@@ -127,6 +187,24 @@ mod tests {
     use crate::api;
 
     #[test]
+    fn the_steps_of_a_path_are_a_table_with_their_forces() {
+        let step = |index: i32| json!({"displacement": 1e-8 * f64::from(index), "force": -0.5, "regime": "stick"});
+        let document = serde_json::from_str(api::document()).unwrap();
+        let text_of = |steps: i32| {
+            let steps: Vec<_> = (1..=steps).map(step).collect();
+            summary(&json!({"steps": steps}), "/simulate", &document)
+        };
+        let few = text_of(3);
+        for line in ["    displacement  force   regime", "    10 nm         -0.5 N  stick"] {
+            assert!(few.lines().any(|one| one == line), "{line} in {few}");
+        }
+        assert_eq!(few.lines().count(), 1 + 1 + 3 + 1, "{few}");
+        let many = text_of(100);
+        assert!(many.contains("    ... 76 more rows: --format csv prints all\n    890 nm"), "{many}");
+        assert!(many.contains("120 nm") && !many.contains("130 nm") && many.contains("    1 um"), "{many}");
+    }
+
+    #[test]
     fn a_reply_is_said_in_words_and_numbers() {
         let reply = json!({
             "contact": {"contact_radius": 9.324_437_98e-5, "e_star": 2.307_692e11},
@@ -145,7 +223,9 @@ mod tests {
             "  regime                           partial_slip",
             "  memory depth                     3",
             "  radius                           3 values, 0 m to 90 um",
-            "  peaks                            2 rows",
+            "    radius",
+            "    1 um",
+            "    2 um",
             "  max                              none",
             "  mean                             -25 MPa",
             "  force error                      1.23457e-16",

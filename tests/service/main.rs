@@ -4,6 +4,7 @@
 mod common;
 
 mod admission;
+mod demo;
 mod drain;
 mod fairness;
 mod hostile_http;
