@@ -3,16 +3,23 @@
 import re
 from pathlib import Path, PurePosixPath
 from posixpath import normpath, relpath
+from textwrap import indent
 
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).resolve().parents[1]
+#: The tables of the fields of replies, which `./check site` has printed.
+TABLES = ROOT / "site" / ".cache" / "reference.md"
 #: The folder of the site that stands for the repository.
 REPOSITORY = "repository"
 #: Pages outside docs/, with their places in the site.
 PAGES = {name: f"{REPOSITORY}/{name}" for name in ["ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"]} | {"README.md": "index.md"}
 LINK = re.compile(r"(\]\(|\]: |(?:src|href)=\")(?!\w+:|#|<)([^)\s\"#]+)")
+#: A block of Python or of a shell, with what it prints.
+BLOCK = r"^```{}\n.*?^```\n(?:\n```output\n.*?^```\n)?"
+#: Python, and then the same from a shell.
+PAIR = re.compile(f"({BLOCK.format('python')})\n({BLOCK.format('sh')})", re.MULTILINE | re.DOTALL)
 EQUATION = re.compile(r"<(span|div) class=\"arithmatex\">\\[\[(](.*?)\\[\])]</\1>", re.DOTALL)
 
 
@@ -38,8 +45,14 @@ def on_files(files: Files, config: object) -> Files:
     return files
 
 
+def tabs(match: re.Match[str]) -> str:
+    """Python and shell side by side."""
+    titled = zip(("Python", "curl"), match.groups())
+    return "\n".join(f'=== "{title}"\n\n{indent(block, "    ")}' for title, block in titled)
+
+
 def on_page_markdown(markdown: str, page: object, **_: object) -> str:
-    """Leads links of the repository to the same file in the site."""
+    """Leads links of the repository to the same file in the site, and sets Python and shell in tabs."""
     own = page.file.src_uri
     source = next((path for path, at in PAGES.items() if at == own), f"docs/{own}")
 
@@ -47,7 +60,9 @@ def on_page_markdown(markdown: str, page: object, **_: object) -> str:
         target = place(normpath(PurePosixPath(source).parent / match[2]))
         return match[1] + (relpath(target, PurePosixPath(own).parent) if target else match[2])
 
-    return LINK.sub(led, markdown)
+    if own == "reference.md" and TABLES.exists():
+        markdown += "\n" + TABLES.read_text()
+    return PAIR.sub(tabs, LINK.sub(led, markdown))
 
 
 def on_page_content(html: str, **_: object) -> str:

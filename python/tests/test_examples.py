@@ -7,6 +7,7 @@ import importlib.util
 import numpy as np
 import pandas
 import pytest
+from streamlit.testing.v1 import AppTest
 
 from conftest import ROOT
 
@@ -82,3 +83,12 @@ def test_a_plan_of_bluesky_reads_the_first_loading_of_a_ball() -> None:
     radius = table["ball_stick_radius"].iloc[0] / np.sqrt(0.9)
     assert np.allclose(table["ball_displacement"], share * most, rtol=1e-12)
     assert np.allclose(table["ball_stick_radius"], radius * np.sqrt(1.0 - share), rtol=1e-12)
+
+
+def test_an_app_of_streamlit_shows_the_stick_radius_of_its_sliders() -> None:
+    app = AppTest.from_file(str(EXAMPLES / "streamlit_app.py"), default_timeout=60).run()
+    assert not app.exception
+    before = app.metric[0].value
+    app.slider[1].set_value(50.0).run()
+    # Mindlin (1949): a smaller displacement leaves a larger part stuck.
+    assert float(app.metric[0].value.split()[0]) > float(before.split()[0])

@@ -65,3 +65,10 @@ def test_the_tutorial_leads_to_the_numbers_of_the_page() -> None:
     assert len(changes) == 4
     for change, margin in changes.items():
         assert f"{change}: {margin}" in page, change
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_the_strip_chart_follows_a_contact_to_the_end() -> None:
+    shown = executed("strip_chart.ipynb")
+    assert_plotted(shown, "chart")
+    assert "60 states, up to 2.58 N" in text(shown["chart"])

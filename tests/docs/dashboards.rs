@@ -11,6 +11,7 @@ use crate::common::create;
 use crate::common::postgres::Cluster;
 use crate::common::process::Process;
 use crate::common::prometheus::{MISSING, Prometheus};
+use crate::docs::page;
 use crate::node::node;
 use crate::python::{file, program, succeed};
 
@@ -110,6 +111,11 @@ async fn every_panel_of_a_contact_works_on_sqlite() {
     let id = follow_bench(&server).await;
     let board = dashboard("contact");
     let of = |text: &Value| text.as_str().unwrap().replace("${service}", &server.base).replace("${contact}", &id);
+    // The panel of the page has its service from the data source.
+    let text = page("dashboards.md");
+    let pasted = text.split("```json\n").nth(1).unwrap().split("```").next().unwrap();
+    let pasted = pasted.replace("\"/contacts/ID/", "\"${service}/contacts/${contact}/");
+    let pasted: Value = serde_json::from_str(&pasted).unwrap();
 
     // The list of contacts, by the language in which the data source selects.
     let variable = &board["templating"]["list"][1]["query"]["infinityQuery"];
@@ -125,7 +131,7 @@ async fn every_panel_of_a_contact_works_on_sqlite() {
     assert!(choices[0]["__text"].as_str().unwrap().ends_with(&id), "{said}");
 
     let mut titles = Vec::new();
-    for (title, target) in targets(&board) {
+    for (title, target) in targets(&board).into_iter().chain(targets(&pasted)) {
         assert_eq!(target["datasource"]["uid"], "infinity", "{title}");
         assert!(target["url"].as_str().unwrap().starts_with("${service}/"), "{title}: the address is a variable");
         let reply = reqwest::get(of(&target["url"])).await.unwrap().error_for_status().unwrap();
@@ -144,7 +150,7 @@ async fn every_panel_of_a_contact_works_on_sqlite() {
         }
         titles.push(title);
     }
-    assert_eq!(titles.len(), 10, "{titles:?}");
+    assert_eq!(titles.len(), 10 + 1, "{titles:?}");
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod equations;
 mod examples;
 mod node;
 mod page_forms;
+mod printed;
 mod progress;
 mod python;
 mod reference;
