@@ -110,6 +110,12 @@ async fn the_calls_of_the_readme_run_as_printed() {
 }
 
 #[test]
+fn the_readme_is_one_screen() {
+    let words = std::fs::read_to_string(file("README.md")).unwrap().split_whitespace().count();
+    assert!(words <= 700, "{words} words");
+}
+
+#[test]
 fn every_test_that_verification_names_exists() {
     let text = page("verification.md");
     let mut named = 0;
