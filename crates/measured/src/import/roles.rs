@@ -228,11 +228,14 @@ fn check_coefficient(sheet: &Sheet<'_>, mapping: &Mapping, force: usize) -> Resu
 /// Several columns for one quantity, each with the mapping that chooses it; where others are open too, those in the
 /// same order go together.
 fn ambiguous(sheet: &Sheet<'_>, mapping: &Mapping, role: Role, found: &[Found]) -> ImportError {
-    let columns = &found[role as usize];
+    let all = &found[role as usize];
+    let columns = &all[..all.len().min(LISTED)];
     let titles: Vec<String> =
         columns.iter().map(|column| format!("{} (column {})", sheet.title(*column), column + 1)).collect();
     let both = if titles.len() == 2 { "both" } else { "each" };
-    let fault = format!("{} may {both} be the {}: choose one by `{}`", titles.join(" and "), role.name(), role.name());
+    let more = if all.len() > LISTED { format!(" and {} others", all.len() - LISTED) } else { String::new() };
+    let titles = titles.join(" and ") + &more;
+    let fault = format!("{titles} may {both} be the {}: choose one by `{}`", role.name(), role.name());
     let of = |(index, column): (usize, &usize)| {
         let entry = |(other, columns): (Role, &Found)| {
             let column = if other == role { Some(*column) } else { columns.get(index).or(columns.last()).copied() };

@@ -6,7 +6,7 @@ use super::head::{self, Head};
 use super::label::{Label, Mention};
 use super::lines::{Separator, may_separate};
 use super::mapping::Mapping;
-use super::number::{Evidence, Mark};
+use super::number::{Evidence, Mark, unquoted};
 use super::table::{self, Sort, Table};
 use super::units::Unit;
 
@@ -91,8 +91,9 @@ pub(super) struct Sheet<'a> {
     /// What the head says of each column.
     pub(super) labels: Vec<Label>,
     pub(super) head: Head,
-    /// Columns whose cells have their unit.
-    amounts: Vec<(usize, Unit)>,
+    has_names: bool,
+    /// The unit of columns whose cells have theirs, up to the last of them.
+    amounts: Vec<Option<Unit>>,
 }
 
 /// The numbers of some columns, and whether they have decimal commas.
@@ -132,6 +133,7 @@ impl<'a> Sheet<'a> {
             is_text: Vec::new(),
             labels: Vec::new(),
             head: Head::default(),
+            has_names: false,
             amounts: Vec::new(),
         };
         sheet.find(range, mapping)?;
@@ -144,7 +146,8 @@ impl<'a> Sheet<'a> {
     /// Asks about a column of texts that are numbers with another sign between them.
     fn check_separator(&self) -> Result<(), ImportError> {
         let is_glued = |row: &u32, column: usize| {
-            let text = self.table.text(*row as usize, column);
+            let cell = self.table.cell(*row as usize, column);
+            let text = if cell.sort() == Sort::Text { self.table.text(*row as usize, column) } else { "" };
             table::is_glued(text) && !clock::is_stamp(text)
         };
         let is_open = |column: &usize| {
@@ -245,6 +248,7 @@ impl<'a> Sheet<'a> {
             self.kinds[*line] = *kind;
         }
         self.labels = head.labels.clone();
+        self.has_names = self.labels.iter().any(|label| !label.text.is_empty());
         self.head = head;
         if is_said { Ok(()) } else { self.check_header(&spoilt, first) }
     }
@@ -470,11 +474,12 @@ impl<'a> Sheet<'a> {
                 return;
             }
         }
-        let is_marked =
-            |column: usize| self.rows.iter().take(ENOUGH).any(|row| !self.table.text(*row as usize, column).is_empty());
-        while widest < self.width && is_marked(widest) {
-            widest += 1;
+        let mut is_marked = vec![false; self.width];
+        for row in self.rows.iter().take(ENOUGH) {
+            let cells = self.table.split(*row as usize);
+            is_marked.iter_mut().zip(cells).for_each(|(marked, cell)| *marked |= !unquoted(cell).is_empty());
         }
+        widest += is_marked[widest..].iter().take_while(|marked| **marked).count();
         self.width = widest;
         self.is_text.truncate(widest);
     }
@@ -582,7 +587,7 @@ impl<'a> Sheet<'a> {
 
     /// Whether any column has a name.
     pub(super) fn has_names(&self) -> bool {
-        self.labels.iter().any(|label| !label.text.is_empty())
+        self.has_names
     }
 
     /// The column in a sentence.
@@ -635,8 +640,8 @@ impl<'a> Sheet<'a> {
                 if value.is_none() && self.table.cell(line, *column).sort() != Sort::Missing {
                     fault = fault.or(Some(*column));
                 }
-                let unit = self.amounts.iter().find(|(with_unit, _)| with_unit == column);
-                values.push(value.map(|value| unit.map_or(value, |(_, unit)| unit.coherent().convert(value, *unit))));
+                let unit = self.amounts.get(*column).copied().flatten();
+                values.push(value.map(|value| unit.map_or(value, |unit| unit.coherent().convert(value, unit))));
             }
             match fault {
                 Some(column) if numbers > 0 || columns.len() == 1 => return Err(self.not_a_number(line, column)),
@@ -675,8 +680,8 @@ impl<'a> Sheet<'a> {
             let text = self.table.text(*first as usize, *column);
             let symbol = text[text.trim_end_matches(|letter: char| !letter.is_ascii_digit()).len()..].trim().to_owned();
             if let Some(unit) = unit(*first) {
-                self.amounts.retain(|(known, _)| known != column);
-                self.amounts.push((*column, unit));
+                self.amounts.resize(self.width.max(self.amounts.len()), None);
+                self.amounts[*column] = Some(unit);
                 if self.labels[*column].unit == Mention::Absent {
                     self.labels[*column].unit = Mention::Known(unit, symbol);
                 }
