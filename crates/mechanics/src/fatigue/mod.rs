@@ -39,7 +39,7 @@ use curve::StressCurve;
 pub use curve::{Instant, MAX_INSTANTS};
 pub use cycle::{Cycle, MOST_BYTES};
 pub use life::{LIVES, Life, LifeCurve, NoLife, StrainLife};
-use planes::{Vector, axes, grid, unit};
+use planes::{Vector, axes, coarse_grid, unit};
 pub use rating::{Measure, Rated};
 pub use search::Worst;
 pub use study::{Bulk, FIELD_BYTES, Largest, Ratings, Study};
@@ -137,13 +137,45 @@ impl Criterion {
         Measure::Stress(*self).over(&StressCurve::of_list(path), 0.0, None)
     }
 
-    /// Its value over finite stresses as [`Criterion::of`], but on the planes of the grid alone: lower by some per
-    /// cent.
-    fn roughly(&self, path: &[Stress]) -> f64 {
+    /// Its value over finite stresses as [`Criterion::of`], but on the planes of a coarse grid alone: lower by some per
+    /// cent. Where no plane reaches `least`, which is above zero, something between both.
+    fn roughly(&self, path: &[Stress], least: f64) -> f64 {
         if matches!(self, Criterion::Crossland { .. } | Criterion::DangVan { .. }) {
             return self.of(path).value;
         }
-        most(grid(&self.starts(path)).map(|normal| self.on_plane(path, normal).0)).1
+        if least > 0.0 {
+            let bound = self.bound(path);
+            if bound < least {
+                return bound;
+            }
+        }
+        most(coarse_grid(&self.starts(path)).map(|normal| self.on_plane(path, normal).0)).1
+    }
+
+    /// What its value on any plane is not above: by the largest principal stress, and by the largest shear stress and
+    /// strain about the middle of the path on any plane.
+    fn bound(&self, path: &[Stress]) -> f64 {
+        let most_of = |of: &dyn Fn(&Stress) -> f64| path.iter().map(of).fold(0.0, f64::max);
+        let middle = path.iter().fold(Stress::default(), |sum, stress| sum + *stress) * (-1.0 / path.len() as f64);
+        let tension = most_of(&|stress| stress.principal()[0]);
+        let sheared = || most_of(&|stress| (*stress + middle).max_shear());
+        match *self {
+            Criterion::Crossland { .. } | Criterion::DangVan { .. } => f64::INFINITY,
+            Criterion::Findley { k } => sheared() + k * tension,
+            Criterion::SmithWatsonTopper { youngs_modulus, poisson } => {
+                let strain = |stress: &Stress| {
+                    let off = *stress + middle;
+                    let [first, _, last] = off.principal().map(|along| (1.0 + poisson) * along);
+                    let rest = 3.0 * poisson * off.hydrostatic();
+                    (first - rest).abs().max((last - rest).abs())
+                };
+                tension * most_of(&strain) / youngs_modulus
+            }
+            Criterion::FatemiSocie { k, yield_stress, youngs_modulus, poisson } => {
+                let shear_modulus = 0.5 * youngs_modulus / (1.0 + poisson);
+                sheared() / shear_modulus * (1.0 + k * tension / yield_stress)
+            }
+        }
     }
 
     /// The planes that a search must not miss: of largest tension, where a criterion is cut off without.
@@ -248,4 +280,35 @@ fn tension_axis(stress: &Stress) -> Vector {
 
 fn cross([a, b, c]: &Vector, [x, y, z]: &Vector) -> Vector {
     [b * z - c * y, c * x - a * z, a * y - b * x]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Criterion;
+    use crate::Stress;
+
+    #[test]
+    fn no_plane_exceeds_the_bound_and_no_start_is_passed_over() {
+        let mut state = 1_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let (youngs_modulus, poisson) = (2.1e11, 0.3);
+        let criteria = [
+            Criterion::Findley { k: 0.3 },
+            Criterion::SmithWatsonTopper { youngs_modulus, poisson },
+            Criterion::FatemiSocie { k: 0.5, yield_stress: 5e8, youngs_modulus, poisson },
+        ];
+        for _ in 0..30 {
+            let path: Vec<Stress> = (0..9).map(|_| Stress::from_components([0; 6].map(|_| 1e9 * random()))).collect();
+            for criterion in criteria {
+                let (value, rough) = (criterion.of(&path).value, criterion.roughly(&path, 0.0));
+                assert!(rough <= value && rough >= 0.9 * value, "{criterion:?}: {rough} of {value}");
+                assert!(value <= criterion.bound(&path) * (1.0 + 1e-12), "{criterion:?}");
+                let above = criterion.roughly(&path, 2.0 * value);
+                assert!(rough <= above && above <= 1.0001 * criterion.bound(&path), "{criterion:?}");
+            }
+        }
+    }
 }

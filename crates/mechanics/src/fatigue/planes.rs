@@ -34,23 +34,33 @@ const MOST_STEPS: usize = 60;
 pub(super) type Vector = [f64; 3];
 
 /// Normals of the upper half of a sphere.
-static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| {
+static NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| normals(GRID));
+/// Half as many each way, for a search that only looks where to begin.
+static FEW_NORMALS: LazyLock<Vec<Vector>> = LazyLock::new(|| normals(2.0 * GRID));
+
+/// Normals of the upper half of a sphere, the angle `apart`, a part of a right one.
+fn normals(apart: f64) -> Vec<Vector> {
     let mut normals = vec![[0.0, 0.0, 1.0]];
-    for latitude in 1..=18 {
-        let tilt = f64::from(latitude) * GRID;
+    for latitude in 1..=(FRAC_PI_2 / apart).round() as u32 {
+        let tilt = f64::from(latitude) * apart;
         // Around the equator opposite normals are the same plane.
-        let turn = if tilt < FRAC_PI_2 - 0.5 * GRID { 2.0 * PI } else { PI };
-        let count = (turn * tilt.sin() / GRID).round();
+        let turn = if tilt < FRAC_PI_2 - 0.5 * apart { 2.0 * PI } else { PI };
+        let count = (turn * tilt.sin() / apart).round();
         normals.extend((0..count as u32).map(|index| {
             let (sin, cos) = (turn * f64::from(index) / count).sin_cos();
             [tilt.sin() * cos, tilt.sin() * sin, tilt.cos()]
         }));
     }
     normals
-});
+}
+
+/// The normals of a coarse grid, and `more`.
+pub(super) fn coarse_grid(more: &[Vector]) -> impl Iterator<Item = &Vector> {
+    FEW_NORMALS.iter().chain(more)
+}
 
 /// The normals of the grid, and `more`.
-pub(super) fn grid(more: &[Vector]) -> impl Iterator<Item = &Vector> {
+fn grid(more: &[Vector]) -> impl Iterator<Item = &Vector> {
     NORMALS.iter().chain(more)
 }
 

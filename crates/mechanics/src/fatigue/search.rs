@@ -163,9 +163,17 @@ impl Study<'_> {
             net.push([0.0, 0.0, FAR]);
         }
         let mut starts = Vec::with_capacity(net.len());
+        // What a start must reach by the best so far.
+        let mut reach = vec![0.0_f64; self.measures.len()];
         for at in net {
             let place = self.place(at);
-            starts.push((at, self.sample(&place, false)?));
+            let values = self.sample(&place, false, &reach)?;
+            for (measure, (reach, value)) in reach.iter_mut().zip(&values).enumerate() {
+                if value.is_finite() && (at[2] <= 0.0 || !self.is_flat(measure)) {
+                    *reach = reach.max(WORTH * value);
+                }
+            }
+            starts.push((at, values));
         }
         Ok(starts)
     }

@@ -9,10 +9,11 @@ use super::critical_distance::mean_over_depth;
 use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
 use super::planes::Vector;
 use super::{Cycle, Instant, Measure, Rated};
+use crate::cells::shape::Reach;
 use crate::contact::Contact;
 use crate::profile::Profile;
 use crate::range::error::Error;
-use crate::subsurface::{Side, Stress, Subsurface};
+use crate::subsurface::{PlaceSums, Side, Stress, Subsurface};
 
 /// The value of a measure of the surface below the surface.
 const NO_VALUE: Rated = Rated { value: f64::NAN, error: 0.0, plane: None, at: None };
@@ -35,6 +36,10 @@ const AVERAGING_SHARE: f64 = 0.05;
 const DEEP: f64 = 0.3;
 /// Instants closer than this, in parts of a move, are one.
 const SAME_INSTANT: f64 = 1e-12;
+/// Rings of a state up to which a place adds them up one by one.
+const FEW_RINGS: usize = 32;
+/// Cells of a profile whose sums a place takes at every instant.
+const FEW_CELLS: usize = 64;
 /// Places at which the size of the criteria is found first.
 const SAMPLED_PLACES: usize = 48;
 /// Bytes of fields that are kept for other places, and of the panels that one has on a profile that is no parabola.
@@ -103,6 +108,8 @@ pub struct Study<'a> {
     near_radius: f64,
     /// How many are kept of each kind.
     kept: usize,
+    /// Whether the profile has so few cells that sums over all of them cost less than a few fields.
+    has_few_cells: bool,
 }
 
 impl<'a> Study<'a> {
@@ -127,6 +134,8 @@ impl<'a> Study<'a> {
         let most = |of: &dyn Fn(&Contact) -> f64| ends.iter().map(of).fold(0.0, f64::max);
         let panels = if matches!(cycle.start().profile(), Profile::Sphere(_)) { 0 } else { PANEL_BYTES };
         let largest = ends.iter().map(Contact::memory_bytes).max().unwrap_or(0);
+        let radius = most(&Contact::contact_radius);
+        let cells = cycle.start().indenter.cells(Reach::Radius(radius));
         let added = bulk.map_or(0.0, |bulk| bulk.mean.abs() + bulk.amplitude.abs());
         Ok(Study {
             cycle,
@@ -136,7 +145,7 @@ impl<'a> Study<'a> {
             on_surface: false,
             tolerance,
             keep_going,
-            radius: most(&Contact::contact_radius),
+            radius,
             stress: most(&|end| end.summary().unit_pressure()) + added,
             travel: extent(ends.iter().map(Contact::displacement)),
             friction: cycle.start().friction(),
@@ -146,6 +155,7 @@ impl<'a> Study<'a> {
             near: HashMap::new(),
             near_radius: f64::NAN,
             kept: FIELD_BYTES / 2 / (4 * largest + panels),
+            has_few_cells: cells.is_some_and(|cells| cells.cells.len() <= FEW_CELLS),
         })
     }
 
@@ -156,7 +166,7 @@ impl<'a> Study<'a> {
     pub fn rate_all(&mut self, places: &[[f64; 3]]) -> Result<Ratings, Error> {
         let stride = places.len().div_ceil(SAMPLED_PLACES).max(1);
         for place in places.iter().step_by(stride) {
-            self.sample(place, true)?;
+            self.sample(place, true, &[])?;
         }
         let mut values = vec![Vec::with_capacity(places.len()); self.measures.len()];
         let mut largest: Vec<Option<(usize, Rated, usize)>> = vec![None; self.measures.len()];
@@ -248,20 +258,23 @@ impl<'a> Study<'a> {
     }
 
     /// The measures at a place over few instants, those that it has for itself left out unless `passes`: lower than
-    /// they are.
-    pub(super) fn sample(&mut self, place: &[f64; 3], passes: bool) -> Result<Vec<f64>, Error> {
+    /// they are, or below what each must `reach` to count.
+    pub(super) fn sample(&mut self, place: &[f64; 3], passes: bool, reach: &[f64]) -> Result<Vec<f64>, Error> {
         let any = Allowance { stress: f64::INFINITY, slip: f64::INFINITY };
         let Some(curve) = self.curve(place, any, passes)? else {
             return Ok(vec![f64::INFINITY; self.measures.len()]);
         };
         let samples: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
         let mut values = Vec::with_capacity(self.measures.len());
-        for (measure, reference) in self.measures.iter().zip(&mut self.reference) {
+        for (index, (measure, reference)) in self.measures.iter().zip(&mut self.reference).enumerate() {
+            let least = reach.get(index).copied().unwrap_or(0.0);
             let value = match measure {
-                Measure::Stress(criterion) => criterion.roughly(&samples),
+                Measure::Stress(criterion) => criterion.roughly(&samples, least),
                 _ => measure.over(&curve, self.friction, None).value,
             };
-            *reference = reference.max(value);
+            if value >= least {
+                *reference = reference.max(value);
+            }
             values.push(value);
         }
         Ok(values)
@@ -359,18 +372,31 @@ impl<'a> Study<'a> {
         // Noise that the curve does not see.
         let averaging = (AVERAGING_SHARE * allowed.stress.min(self.stress)).max(self.rounding());
         let mut averaging_error = 0.0_f64;
+        let mut sums = None;
         let mut curve = StressCurve::follow(&stretches, allowed, |step, part, shared| {
             let field = self.field(step, part, shared)?;
             let (stress, off) = if self.averaged > 0.0 {
                 mean_over_depth(&field.0, *place, self.averaged, averaging)
             } else {
-                (field.0.stress(*place), 0.0)
+                (self.stress(&field.0, *place, shared, &mut sums), 0.0)
             };
             averaging_error = averaging_error.max(off);
             Ok(self.looked_at(&field, stress, step, (radius, surface)))
         })?;
         curve.iter_mut().for_each(|curve| curve.error.stress += averaging_error);
         Ok(curve)
+    }
+
+    /// The stress at a place at an instant that many places share, or that it has for itself. By the sums of the place,
+    /// which are kept, unless a profile of many cells is asked for at shared instants alone.
+    fn stress(&self, field: &Subsurface, place: [f64; 3], shared: bool, sums: &mut Option<PlaceSums>) -> Stress {
+        if (!shared || self.has_few_cells) && sums.is_none() && field.contact.memory_depth() <= FEW_RINGS {
+            *sums = field.place_sums(place, self.radius);
+        }
+        match sums {
+            Some(sums) if field.contact.memory_depth() <= FEW_RINGS => field.stress_by(sums, place),
+            _ => field.stress(place),
+        }
     }
 
     /// The field at an instant.

@@ -221,7 +221,7 @@ impl Indenter {
     #[must_use]
     pub fn slope(&self, radius: f64) -> f64 {
         match (self.profile.curve(), self.ball()) {
-            (Some(curve), _) => curve.rate(curve.level_of(radius)).recip(),
+            (Some(curve), _) => curve.rate(curve.level_of(radius).into()).recip(),
             (None, Some(ball)) => 2.0 * radius / ball.curvature_radius,
             _ => self.profile.slope(radius),
         }

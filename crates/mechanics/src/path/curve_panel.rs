@@ -46,17 +46,31 @@ struct Quadrature {
 
 /// A quadrature over the radii of a ring of an integrand of (x, D - h, h).
 fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -> f64) -> Quadrature {
+    if let Some(curve) = contact.indenter.profile().curve() {
+        // Over the level, as its radius is an inverse: over the root of the distance from the inner one, next to which
+        // a radius may rise like a root.
+        return by_two_rules(|u| {
+            let risen = ring.depth * u * u;
+            let level = ring.inner.level + DoubleDouble::from(risen);
+            let rate = 2.0 * ring.depth * u * curve.rate(level);
+            rate * integrand(curve.radius_at(level), risen, ring.depth - risen)
+        });
+    }
     let (inner, width) = (ring.inner.radius, ring.outer.radius - ring.inner.radius);
     // Over the root of the distance from the inner radius: next to a flat g rises like a root.
-    let over_root = |u: f64| {
+    by_two_rules(|u| {
         let x = inner + width * u * u;
         let level = DoubleDouble::from(contact.indenter.level(x));
         let [risen, left] = [level - ring.inner.level, ring.outer.level - level];
         let [risen, left] = [risen, left].map(|height| height.value().clamp(0.0, ring.depth.max(0.0)));
         2.0 * width * u * integrand(x, risen, left)
-    };
-    let value = gauss::integral(&TWENTY_POINTS, 1.0, over_root);
-    Quadrature { value, difference: (value - gauss::integral(&EIGHT_POINTS, 1.0, over_root)).abs() }
+    })
+}
+
+/// The integral of a function over 0 to 1.
+fn by_two_rules(integrand: impl Fn(f64) -> f64) -> Quadrature {
+    let value = gauss::integral(&TWENTY_POINTS, 1.0, &integrand);
+    Quadrature { value, difference: (value - gauss::integral(&EIGHT_POINTS, 1.0, &integrand)).abs() }
 }
 
 /// Whether slip towards `sign` goes on while the position advances and the indentation rises by so much.

@@ -359,8 +359,8 @@ impl CurveFamily for Arc<Set> {
         self.moments_below(level).width
     }
 
-    fn rate(&self, level: f64) -> f64 {
-        self.rate_at(level.into())
+    fn rate(&self, level: DoubleDouble) -> f64 {
+        self.rate_at(level)
     }
 
     fn level_of(&self, radius: f64) -> f64 {

@@ -15,7 +15,7 @@ pub(crate) trait CurveFamily {
     fn radius_at(&self, level: DoubleDouble) -> f64;
 
     /// X'(y) (pure number).
-    fn rate(&self, level: f64) -> f64;
+    fn rate(&self, level: DoubleDouble) -> f64;
 
     /// The level, m, from which on X is no less than `radius`, m.
     fn level_of(&self, radius: f64) -> f64;

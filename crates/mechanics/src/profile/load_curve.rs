@@ -292,12 +292,12 @@ impl CurveFamily for LoadCurve {
         self.0.radius(level)
     }
 
-    fn rate(&self, level: f64) -> f64 {
-        let index = self.0.find(level);
+    fn rate(&self, level: DoubleDouble) -> f64 {
+        let index = self.0.find(level.value());
         if index > 0 {
             return self.0.slope(index);
         }
-        self.0.exponent * self.0.radius(level.into()) / level
+        self.0.exponent * self.0.radius(level) / level.value()
     }
 
     fn level_of(&self, radius: f64) -> f64 {
@@ -363,7 +363,7 @@ impl CurveFamily for LoadCurve {
             (load * (level.min(gap.high) - gap.low), OF_RADIUS * gap.radius)
         };
         // Where X hardly rises, a radius says little of the level.
-        let level = if error > 0.0 { (error / self.rate(level)).min(level) } else { 0.0 };
+        let level = if error > 0.0 { (error / self.rate(level.into())).min(level) } else { 0.0 };
         InterpolationError { load: if load > 0.0 { load } else { 0.0 }, level, kernel: 0.0 }
     }
 }

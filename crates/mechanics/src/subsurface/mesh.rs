@@ -33,7 +33,7 @@ pub(super) struct Source {
 
 /// A part of a cell over which the shear has one slope.
 #[derive(Clone, Copy, Debug)]
-struct MeshPanel {
+pub(super) struct MeshPanel {
     /// The number of the cell.
     cell: usize,
     span: Span,
@@ -132,6 +132,27 @@ impl Mesh {
 }
 
 impl MeshPanel {
+    /// A part of the cell of this number, with the slope of the pressure for that of the shear.
+    pub(super) fn new(cell: usize, span: Span) -> MeshPanel {
+        MeshPanel { cell, span, share: 1.0 }
+    }
+
+    /// Calls `visit(t - r, source)` for the sources that a place at these radius and depth, over `radius`, sees of it.
+    pub(super) fn visit(
+        &self,
+        cell: &Cell,
+        radius: f64,
+        place: (&StressRadius, f64),
+        mut visit: impl FnMut(f64, &Source),
+    ) {
+        let (r, seen) = (place.0.radius / radius, SeenPanel::new(self, cell, radius, place));
+        if seen.is_far() {
+            self.sources(cell, radius).iter().for_each(|source| visit(source.t - r, source));
+        } else {
+            seen.visit(radius, r, &mut visit);
+        }
+    }
+
     /// The sources at the points of the rule.
     fn sources(&self, cell: &Cell, radius: f64) -> Vec<Source> {
         let part = cell.part(&self.span);

@@ -9,6 +9,7 @@ mod complex;
 mod kernel;
 mod line;
 mod mesh;
+mod place_sums;
 mod sphere;
 mod tensor;
 
@@ -24,6 +25,7 @@ use crate::range::{self, Quantity};
 use kernel::{DeepPlace, NormalKernels, TangentialKernels};
 use line::LineField;
 use mesh::{Mesh, Source};
+pub(crate) use place_sums::PlaceSums;
 use sphere::Kinks;
 pub use tensor::Stress;
 
@@ -149,14 +151,42 @@ impl Subsurface {
             Some(kinks) if place.r.hypot(place.z) < FAR => kinks.functions(&place),
             _ => self.integrated(&place, r),
         };
-        let (pressed, dragged) = self.units;
+        self.of_functions([x, y], radius, surface, (normal, tangential))
+    }
+
+    /// What a place makes of all states up to the contact radius `unit`, m, where that is cheaper than the field of
+    /// each: where a field is integrated.
+    pub(crate) fn place_sums(&self, [x, y, z]: [f64; 3], unit: f64) -> Option<PlaceSums> {
+        let depth = if z <= SURFACE * unit { 0.0 } else { z };
+        let sums = || PlaceSums::new(&self.contact.indenter, (x.hypot(y), depth), unit, self.poisson);
+        (self.kinks.is_none() && self.line.is_none()).then(sums)
+    }
+
+    /// The stress at a place by its sums.
+    pub(crate) fn stress_by(&self, sums: &PlaceSums, [x, y, z]: [f64; 3]) -> Stress {
+        if self.contact.contact_radius() <= 0.0 {
+            return Stress::default();
+        }
+        self.of_functions([x, y], sums.unit(), z <= SURFACE * sums.unit(), sums.functions(&self.contact))
+    }
+
+    /// The stress at x, y by the functions of the place, lengths over `unit`, m.
+    fn of_functions(
+        &self,
+        [x, y]: [f64; 2],
+        unit: f64,
+        surface: bool,
+        (normal, tangential): (NormalKernels, TangentialKernels),
+    ) -> Stress {
+        let longer = self.contact.contact_radius() / unit;
+        let (pressed, dragged) = (self.units.0 * longer, self.units.1 * longer);
         let stress = Stress::of(
-            x / radius,
-            y / radius,
+            x / unit,
+            y / unit,
             &normal.map(|value| pressed * value),
             &tangential.map(|value| dragged * value),
         );
-        if surface { self.of_surface(r, stress) } else { stress }
+        if surface { self.of_surface(x.hypot(y), stress) } else { stress }
     }
 
     /// The stress below a line contact, with the stress along x that comes with its tangential force.
