@@ -3,7 +3,7 @@ import { Axis, dataRange } from "./axis.js";
 import { drawCursor, drawLegend, inkedPlaces } from "./chart_cursor.js";
 import { handleInput } from "./chart_input.js";
 import { menu } from "./chart_menu.js";
-import { drawBands, drawGrid, drawLevel, drawSeries, spreadNames } from "./chart_parts.js";
+import { drawBands, drawGrid, drawLevel, drawSeries, shrinkTitles, spreadNames } from "./chart_parts.js";
 import { el, svg, withSubscripts } from "./dom.js";
 import { formatQuantity } from "./units.js";
 
@@ -144,6 +144,7 @@ export class Chart {
       svg("rect", { class: "frame", ...size, x: box.left + 0.5, y: box.top + 0.5 }),
       this.cursor,
     );
+    shrinkTitles(this);
     this.data.layer?.(this, inside);
     if (this.data.empty && !this.visible().some((series) => series.points.some((point) => point[1] !== null))) {
       inside.append(

@@ -67,6 +67,20 @@ export function drawGrid(chart) {
   return group;
 }
 
+/** Sets titles closer that are longer than the plot. */
+export function shrinkTitles({ svg: drawing }) {
+  const { width, height } = drawing.viewBox.baseVal;
+  for (const title of drawing.querySelectorAll("text.title")) {
+    const room = title.hasAttribute("transform") ? height : width;
+    if (title.getComputedTextLength() <= room) continue;
+    title.setAttribute("textLength", String(room - 4));
+    title.setAttribute("lengthAdjust", "spacingAndGlyphs");
+    // The middle of the plot lies above that of the drawing.
+    if (title.hasAttribute("transform")) title.setAttribute("transform", `rotate(-90 13 ${height / 2})`);
+    title.setAttribute(title.hasAttribute("transform") ? "y" : "x", String(room / 2));
+  }
+}
+
 /** A labelled value of y. */
 export function drawLevel(chart, { y, label, kind }) {
   const at = crisp(chart.y.at(y));

@@ -82,6 +82,7 @@ export function contactView(model, contact, changed) {
   const offered = Object.fromEntries(Object.entries(lists).filter(([, list]) => list));
   const views = mapped(offered, (list, tab) => ({
     parts: list.flat().filter((card) => card.show),
+    firsts: list.flat().flatMap((card) => card.first ?? []),
     plots: list.flat().flatMap((card) => (card instanceof Chart ? card : (card.charts ?? []))),
     calls: () => (tab === "live" ? stateCalls(model) : list.flat().flatMap((card) => card.calls?.() ?? [])),
   }));
@@ -115,6 +116,7 @@ export function contactView(model, contact, changed) {
     document.title = `${TABS[tab]} · ${title.heading.textContent} – stickslip`;
     link.write();
     show(state);
+    for (const first of view.firsts.splice(0)) first();
     // The lines of a plot that was hidden have the width of nothing.
     for (const plot of view.plots) plot.redraw();
   };

@@ -1,7 +1,8 @@
-// The requests behind what is on screen, as commands for curl and as Python with requests.
+// The requests behind what is on screen, as commands for curl and as Python.
 import { hasKey } from "./api.js";
 import { notice } from "./dom.js";
 import { menuEntry, popupMenu } from "./popup_menu.js";
+import { pythonCode } from "./python_code.js";
 
 const base = () => new URL(".", location.href).href.replace(/[?#].*$/, "").replace(/\/$/, "");
 
@@ -20,36 +21,12 @@ export function curl(calls) {
     .join("\n\n");
 }
 
-/** The same for Python. */
-export function python(calls) {
-  const head = ["import os", "import requests", "", `base = ${JSON.stringify(base())}`, "session = requests.Session()"];
-  if (hasKey()) head.push('session.headers["authorization"] = "Bearer " + os.environ["STICKSLIP_KEY"]');
-  else head.splice(0, 1);
-  const blocks = calls.map(({ method, path, body }) => {
-    const data = body === undefined ? "" : `, json=${pythonLiteral(body)}`;
-    const request = `reply = session.${method.toLowerCase()}(base + ${JSON.stringify(path)}${data})`;
-    return `\n${request}\nreply.raise_for_status()\nprint(reply.json())`;
-  });
-  return [...head, ...blocks].join("\n");
-}
-
-function pythonLiteral(value) {
-  if (value === null || value === undefined) return "None";
-  if (typeof value === "boolean") return value ? "True" : "False";
-  if (Array.isArray(value)) return `[${value.map(pythonLiteral).join(", ")}]`;
-  if (typeof value === "object") {
-    const members = Object.entries(value).filter(([, member]) => member !== undefined);
-    return `{${members.map(([name, member]) => `${JSON.stringify(name)}: ${pythonLiteral(member)}`).join(", ")}}`;
-  }
-  return JSON.stringify(value);
-}
-
 /** A menu for the requests behind a view, as commands, and for what `more` adds to it. */
 export function copyMenu(calls, more = []) {
   const entry = (name, write) => menuEntry(`Copy as ${name}`, () => show(name, write(calls())));
   return popupMenu("Copy or save", { class: "menu copying", id: "copy-menu" }, [
     entry("curl", curl),
-    entry("Python", python),
+    entry("Python", (asked) => pythonCode(asked, base(), hasKey())),
     ...more,
   ]);
 }

@@ -53,6 +53,30 @@ export function amountOf(key, value, digits) {
   return unit.includes("²/") ? `${formatNumber(value, digits)} ${unit}` : formatQuantity(value, unit, digits);
 }
 
+const elements = (fields) => Object.values(fields).map((one) => one.element);
+
+/** The numbers of Basquin's curve: so many cycles at a value, and fewer by a power of it above. */
+const lifeFields = (units) => ({
+  reference: { label: "Value of the criterion", units, unit: "MPa", value: "", optional: true },
+  cycles: { label: "Cycles at this value", value: "", optional: true },
+  exponent: { label: "Exponent", value: "", optional: true },
+});
+/** Why there is no life, by its code. */
+const NO_LIFE = {
+  not_positive: "the value is not positive, which is no proof of an infinite life",
+  too_long: "more than 10¹² cycles, beyond all tests",
+  too_short: "less than half a cycle",
+  infinite_stress: "the stress is infinite",
+};
+
+/** A life in words. */
+function lifeText({ cycles, shortest, longest, no_life: reason }) {
+  if (typeof cycles !== "number") return `No life: ${NO_LIFE[reason] ?? reason}.`;
+  const bracket = `${formatNumber(shortest, 2)} to ${longest === null ? "any number" : formatNumber(longest, 2)}`;
+  const scatter = "by the error of the value; lives scatter by a factor of three";
+  return `Life ${formatNumber(cycles, 2)} cycles (${bracket} ${scatter}).`;
+}
+
 /** The fieldsets of all criteria; `isModulusKnown` leaves Young’s modulus out. */
 export function criteriaFields(form, isModulusKnown) {
   const all = Object.entries(CRITERIA).map(([key, { name, text, unit, numbers }]) => {
@@ -64,16 +88,23 @@ export function criteriaFields(form, isModulusKnown) {
     const asked = own && !isModulusKnown ? numbers : others;
     const limit = { label: title, units, unit: "MPa", value: "", optional: true };
     const fields = mapped({ ...asked, limit }, (about, member) => field(member, about));
-    const body = el("div", { class: "fields" }, ...Object.values(fields).map((one) => one.element));
+    const life = mapped(lifeFields(units), (about, member) => field(`life/s_n/${member}`, about));
+    const curve = el("details", {}, el("summary", {}, "Life by a curve of tests"), ...elements(life));
+    const body = el("div", { class: "fields" }, ...elements(fields), curve);
     const fold = () => {
       body.hidden = !box.checked;
       // The numbers of a criterion that is not asked for are not checked.
-      for (const one of Object.values(fields)) one.isLeftOut = !box.checked;
+      for (const one of [...Object.values(fields), ...Object.values(life)]) one.isLeftOut = !box.checked;
     };
     box.addEventListener("change", fold);
     fold();
     const element = el("fieldset", {}, el("label", {}, box, ` ${name} `, el("span", { class: "note" }, text)), body);
-    const value = () => mapped(fields, (one) => one.value);
+    /** @returns {Record<string, any>} */
+    const value = () => {
+      const s_n = mapped(life, (one) => one.value);
+      const hasLife = Object.values(s_n).some((one) => one !== undefined);
+      return { ...mapped(fields, (one) => one.value), ...(hasLife ? { life: { s_n } } : {}) };
+    };
     return { key, box, element, value };
   });
   const chosen = () => all.filter(({ box }) => box.checked);
@@ -98,7 +129,7 @@ function instantText({ part }) {
 }
 
 /** What a criterion says, as elements. */
-export function verdict(key, { largest, margin }, hasLimit) {
+export function verdict(key, { largest, margin, life, critical_distance: below }, hasLimit) {
   const about = criterion(key);
   const lines = [];
   if (largest) {
@@ -110,6 +141,12 @@ export function verdict(key, { largest, margin }, hasLimit) {
     lines.push(el("p", { class: margin < 1 ? "bad" : "good" }, `Margin ${formatNumber(margin, 3)}: ${says}.`));
   } else if (hasLimit) lines.push(el("p", { class: "bad" }, "There is no margin; the warnings say why."));
   else lines.push(el("p", { class: "note" }, "Give a limit, the value that the material withstands, to get a margin."));
+  if (life) lines.push(el("p", {}, lifeText(life)));
+  if (below) {
+    const share = below.margin === undefined ? "" : `, margin ${formatNumber(below.margin, 3)}`;
+    lines.push(el("p", {}, `At the critical distance ${amountOf(key, below.value)}${share}.`));
+    if (below.life) lines.push(el("p", {}, `There: ${lifeText(below.life)}`));
+  }
   if (largest?.plane) {
     const normal = largest.plane.map((part) => formatNumber(Math.abs(part) < 1e-9 ? 0 : part, 2)).join(", ");
     lines.push(el("p", { class: "note" }, `The critical plane has the normal (${normal}).`));

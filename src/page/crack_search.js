@@ -76,6 +76,14 @@ export function crackCard(model) {
     amplitude: optional("/bulk/amplitude", "Amplitude", stress),
     phase: optional("/bulk/phase", "Phase in degrees"),
   };
+  const distance = optional("/critical_distance/length", "Critical distance of the material", {
+    units: LENGTH,
+    unit: "µm",
+  });
+  const method = new Choice(form, () => "/critical_distance/method", "Rated below the worst place", {
+    point: "at half of it",
+    line: "as a mean over twice of it",
+  });
   const tolerance = optional("/tolerance", "Accepted error, relative to the largest value");
   const request = () => {
     return {
@@ -85,6 +93,7 @@ export function crackCard(model) {
       poisson_ratio: poisson ? poisson.value : undefined,
       criteria: criteria.value(),
       bulk: valuesOf(bulk),
+      critical_distance: distance.value === undefined ? undefined : { length: distance.value, method: method.value },
       tolerance: tolerance.value,
     };
   };
@@ -111,7 +120,13 @@ export function crackCard(model) {
     const half = Math.max(HALF * a, 1.2 * Math.abs(x));
     const plane = { normal: "y", offset: y, x: [-half, half, COLUMNS], z: [0, DEPTH * a, ROWS] };
     const { [key]: member } = asked.criteria;
-    const section = { ...asked, criteria: { [key]: member }, plane, tolerance: SECTION_TOLERANCE };
+    const section = {
+      ...asked,
+      critical_distance: undefined,
+      criteria: { [key]: member },
+      plane,
+      tolerance: SECTION_TOLERANCE,
+    };
     const rated = await call("POST", "/fretting", section, model.signal);
     if (question !== wanted) return;
     const unit = criterion(key).unit;
@@ -169,6 +184,7 @@ export function crackCard(model) {
       body.element,
       ...(poisson ? [poisson.element] : []),
       ...criteria.elements,
+      el("details", {}, el("summary", {}, "Critical distance"), distance.element, method.element),
       el(
         "details",
         {},

@@ -11,6 +11,9 @@ const COUNT = 40;
 /** The smallest load and amplitude over the largest. */
 const [LOADS, AMPLITUDES] = [1e-2, 1e-3];
 
+const ABOUT =
+  "Grey: equal friction work of a cycle. Below the dashed line the middle sticks, above it the whole contact slides.";
+
 const spaced = (from, to) => Array.from({ length: COUNT }, (_, index) => from * (to / from) ** (index / (COUNT - 1)));
 
 /** The request for a map about the load of a contact: up to `most` N. */
@@ -61,9 +64,7 @@ export function frettingMap(model) {
     height: 340,
     x: { label: "Load F_N", unit: "N", log: true },
     y: { label: "Amplitude U_0", unit: "m", log: true },
-    note:
-      "Grey: equal friction work of a cycle. Below the dashed line the middle sticks, above it the whole contact " +
-      "slides. The mark is the contact now.",
+    note: ABOUT,
   });
   chart.more = (_, series) => [series.name];
   let data = null;
@@ -71,7 +72,9 @@ export function frettingMap(model) {
     if (!data) return;
     const [x, y] = [model.state.normal_force, amplitudeOf(model.state)];
     // A logarithmic axis has no zero.
-    chart.draw({ ...data, marks: x > 0 && y > 0 ? [{ x, y, class: model.state.regime }] : [] });
+    const isThere = x > 0 && y > 0;
+    const note = `${ABOUT} ${isThere ? "The mark is the contact now." : "At a displacement of zero it has no mark."}`;
+    chart.draw({ ...data, note, marks: isThere ? [{ x, y, class: model.state.regime }] : [] });
   };
   const load = () => model.state.normal_force || model.figures.normal_force;
   const compute = async () => {

@@ -3,6 +3,7 @@ import { showContact } from "./contact.js";
 import { contactList } from "./contact_list.js";
 import { createForm } from "./create_form.js";
 import { el } from "./dom.js";
+import { showHelp } from "./help.js";
 import { contactAddress } from "./tabs.js";
 
 const main = document.getElementById("main");
@@ -31,6 +32,7 @@ async function route(event) {
       const opened = await showContact(view, address, signal, () => follows && main.replaceChildren(view));
       if (!signal.aborted) shown = { id: address.id, ...opened };
     } else if (location.hash === "#/new") createForm(view, signal);
+    else if (location.hash === "#/help") showHelp(view);
     else await contactList(view, signal);
   } catch (error) {
     if (signal.aborted) return;

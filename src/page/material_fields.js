@@ -39,8 +39,8 @@ function body(form, at, title) {
 
 /** The fields of the material. */
 export function materialFields(form, changed) {
-  const kinds = { rigid: "Elastic on rigid", two: "Two elastic bodies", effective: "Reduced moduli" };
-  const choice = new Choice(form, () => "/material", "Elasticity", kinds, "rigid");
+  const kinds = { two: "Two elastic bodies", rigid: "Elastic on rigid", effective: "Reduced moduli" };
+  const choice = new Choice(form, () => "/material", "Elasticity", kinds, "two");
   const fields = el("div", { class: "fields" });
   let read;
   const fill = () => {
@@ -48,8 +48,8 @@ export function materialFields(form, changed) {
       const field = (name, label, value) =>
         new NumberField(form, () => `/material/effective/${name}`, { label, units: MODULUS, unit: "GPa", value });
       const star = {
-        e_star: field("e_star", "Reduced modulus E*", "231"),
-        g_star: field("g_star", "Reduced shear modulus G*", "190"),
+        e_star: field("e_star", "Reduced modulus E*", "115"),
+        g_star: field("g_star", "Reduced shear modulus G*", "95"),
       };
       fields.replaceChildren(...Object.values(star).map((one) => one.element));
       read = () => ({ effective: mapped(star, (one) => one.value) });

@@ -5,25 +5,25 @@ import { numberBox, numberIn } from "./form_fields.js";
 import { formatNumber, formatQuantity, parseNumber } from "./units.js";
 
 export const PROTOCOLS = {
-  falling_amplitude: "Falling amplitude (linear)",
-  equal_peaks: "Equal peaks (for this shape)",
+  falling_amplitude: "Linear (falling amplitude)",
+  equal_peaks: "Equal peaks",
 };
 /** The protocol that the service computes from the present state of a contact. */
 const RELAX = "relax";
 /** Duration of a run with many moves, and longest pause between two moves, ms. */
 const [RUN_TIME, MAX_PAUSE] = [6000, 400];
 
-/** A virgin contact, at the present load of a contact. */
-export const virginContact = ({ definition, state }) => ({
-  ...definition,
-  preload: { indentation: state.indentation },
-});
+/** A virgin contact, at the present load of a contact: its definition, where the load is that of the preload. */
+export const virginContact = ({ definition, figures, state }) =>
+  state.indentation === figures.indentation
+    ? definition
+    : { ...definition, preload: { normal_force: state.normal_force } };
 
 /** The card that runs a protocol on a contact. */
 export function protocolCard(model) {
   const { id, signal } = model;
   const { falling_amplitude } = PROTOCOLS;
-  const searched = { ...PROTOCOLS, [RELAX]: "Least stress, from the present state" };
+  const searched = { ...PROTOCOLS, [RELAX]: "Minimax, from the present state" };
   // The others are searched for zones about the middle, which a bulk stress moves.
   const options = model.hasBulk ? { falling_amplitude } : searched;
   const kind = el(
@@ -48,18 +48,19 @@ export function protocolCard(model) {
   };
   const reversals = () => parseNumber(count.value);
   const path = () => ({ [kind.value]: { reversals: reversals() } });
-  const requestOfRun = () =>
+  /** The same as a question, which moves nothing. */
+  const question = () =>
     kind.value === RELAX
-      ? { method: "POST", path: `/contacts/${id}/relax`, body: { reversals: reversals() } }
-      : { method: "POST", path: `/contacts/${id}/path`, body: { path: path(), steps: "last" } };
+      ? { method: "POST", path: `/contacts/${id}/relax`, body: { reversals: reversals(), dry_run: true } }
+      : {
+          method: "POST",
+          path: "/simulate",
+          body: { contact: virginContact(model), path: path(), steps: "last", residual: true },
+        };
   const displacements = async () => {
     if (kind.value === RELAX) {
-      const { path: best } = await call(
-        "POST",
-        `/contacts/${id}/relax`,
-        { reversals: reversals(), dry_run: true },
-        signal,
-      );
+      const { method, path: of, body } = question();
+      const { path: best } = await call(method, of, body, signal);
       return best.displacement;
     }
     const { steps } = await call("POST", "/simulate", { contact: virginContact(model), path: path() }, signal);
@@ -119,5 +120,5 @@ export function protocolCard(model) {
     ),
     status,
   );
-  return { element, calls: () => [requestOfRun()] };
+  return { element, calls: () => [{ method: "GET", path: `/contacts/${id}/residual` }, question()] };
 }

@@ -5,7 +5,7 @@ import { virginContact } from "./protocol_run.js";
 import { study } from "./study.js";
 import { formatNumber, formatQuantity } from "./units.js";
 
-const KINDS = { minimax: "Least possible", equal_peaks: "Equal peaks", linear: "Linear" };
+const KINDS = { minimax: "Minimax", equal_peaks: "Equal peaks", linear: "Linear" };
 const ENDS = { displacement_zero: "at displacement zero", force_zero: "at force zero", free: "wherever it is best" };
 /** Trials of a protocol that is not followed exactly. */
 const [SAMPLES, SEED] = [200, 1];
@@ -72,6 +72,7 @@ export function protocolSearchCard(model) {
     signal: model.signal,
     path: "/protocols",
     request,
+    isQuick: model.state.normal_force > 0,
     rows: figureRows,
   });
 }

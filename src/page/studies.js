@@ -24,6 +24,7 @@ export function mapCard(model) {
       "For this shape and friction: which loads and amplitudes slide, and how much friction work a steady cycle " +
       "does.",
     charts: [map.chart],
+    isQuick: model.state.normal_force > 0,
     ...map,
   });
   return { ...made, show: map.mark };
@@ -57,27 +58,20 @@ export function residualCard(model) {
         const peaks = left.peaks.map((peak) => Math.abs(peak.shear ?? NaN)).filter(Number.isFinite);
         const most = left.max ?? (peaks.length ? Math.max(...peaks) : null);
         // A logarithmic axis has no zero.
-        found[kind].push([reversals, ...[most, left.mean, left.min].map((value) => value / (full || 1) || null)]);
+        found[kind].push([reversals, most / (full || 1) || null]);
         report((done += 1) / REVERSALS.length / kinds.length);
       }
       if (reversals <= MOST_SEARCHED) {
         const { largest } = await call("POST", "/protocols", { contact: model.definition, reversals }, model.signal);
         found.minimax.push([reversals, (largest ?? 0) / (full || 1) || null]);
       }
-      const line = (name, kind, column) => ({
-        name,
-        kind: `${kind} c${column}`,
-        dots: true,
-        points: found[kind].map((row) => [row[0], row[column]]),
-      });
+      const line = (name, kind) => ({ name, kind: `${kind} c1`, dots: true, points: [...found[kind]] });
       chart.draw({
         empty: "Nothing remains on this shape.",
         series: [
-          line("linear: largest", kinds[0], 1),
-          line("linear: mean peak", kinds[0], 2),
-          line("linear: smallest peak", kinds[0], 3),
-          line("equal peaks: largest", kinds[1], 1),
-          line("least possible (found by search): largest", "minimax", 1),
+          line("linear: largest", kinds[0]),
+          line("equal peaks: largest", kinds[1]),
+          line("minimax: largest", "minimax"),
         ],
       });
     }

@@ -8,9 +8,10 @@ import { showWarnings, warningList } from "./warning_list.js";
 /** A card with a form. By default it sends the document that `request` gives to `path`, and shows the figures that
  *  `rows` makes of the reply, its warnings, and what else `show` does, which gets the list of figures too. `compute`
  *  does all of that in their place; it gets a function that shows how much is done. `parts` stand before the button,
- *  and the charts, which appear when they are drawn, after the results. */
+ *  and the charts, which appear when they are drawn, after the results. What takes little time `isQuick`: it is
+ *  computed when its tab is opened for the first time. */
 export function study({ name, button: label = "Compute", title, text, signal, form = new Fields(), ...more }) {
-  const { parts = [], charts = [], path, request, rows, show } = more;
+  const { parts = [], charts = [], path, request, rows, show, isQuick = false } = more;
   const figures = el("dl", { class: "figures", id: `${name}-figures`, "aria-live": "polite" });
   const warnings = warningList(`${name}-warnings`);
   const bar = el("progress", { max: 1, value: 0, hidden: true, "aria-label": `Progress: ${title}` });
@@ -56,7 +57,7 @@ export function study({ name, button: label = "Compute", title, text, signal, fo
     ...(rows ? [figures, warnings] : []),
     ...charts.map((chart) => chart.element),
   );
-  return { element, charts, calls };
+  return { element, charts, calls, first: isQuick ? run : null };
 }
 
 /** A function that asks the service what belongs to a state once it has rested for so many ms; a reply counts only for

@@ -122,10 +122,15 @@ function ring(x, y, outer, inner) {
   return circle(outer) + (inner > 0 ? circle(inner) : "");
 }
 
+/** The width of a small plot, pixels. */
+const SMALL = 400;
+
 /** The legend of the colours. */
 export function colourScale(plot, full) {
-  const { left, bottom } = plot.box;
-  const [x, y, width] = [left + 8, bottom - 14, 128];
+  const { left, right, bottom } = plot.box;
+  // In the corner of a small plot there is no room for more beside the ring.
+  const isSmall = right - left < SMALL;
+  const [x, y, width] = [left + 8, bottom - 14, isSmall ? 60 : 128];
   const id = `${plot.clip}-scale`;
   const stops = Array.from({ length: 21 }, (_, index) =>
     svg("stop", { offset: index / 20, "stop-color": colour(index / 10 - 1) }),
@@ -135,7 +140,11 @@ export function colourScale(plot, full) {
   return [
     svg("defs", {}, svg("linearGradient", { id }, ...stops)),
     svg("rect", { x, y, width, height: 8, fill: `url(#${id})` }),
-    svg("text", { class: "small over", x, y: y - 4 }, `τ: −${most} to +${most} ${scale.unit}`),
+    svg(
+      "text",
+      { class: "small over", x, y: y - 4 },
+      isSmall ? `±${most} ${scale.unit}` : `τ: −${most} to +${most} ${scale.unit}`,
+    ),
   ];
 }
 

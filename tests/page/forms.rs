@@ -15,9 +15,9 @@ async fn a_contact_follows_while_one_types_and_all_faults_are_shown_at_once_in_w
     let scene = Scene::start().await;
     let browser = &scene.browser;
     scene.view("new").await;
-    browser.says(".derived", &hertz(10.0, 0.01)).await;
+    browser.says(".derived", &hertz(10.0, 0.01, 2.0)).await;
     browser.write(CARD, "20").await;
-    browser.says(".derived", &hertz(10.0, 0.02)).await;
+    browser.says(".derived", &hertz(10.0, 0.02, 2.0)).await;
     browser.picture("new").await;
     // Radius, Young's modulus, Poisson's ratio, friction and load.
     let write = async |texts: [&str; 5]| {
@@ -43,7 +43,7 @@ async fn a_contact_follows_while_one_types_and_all_faults_are_shown_at_once_in_w
     assert_eq!(scene.server.client.contacts(None, None).await.unwrap().items.len(), 1, "the form waits for answers");
     // These are one number each: thousands have three digits in a group, and no group begins with 0.
     write(["12,5", "210", "0,300", "0,3", "1000,000e-2"]).await;
-    browser.says(".derived", &hertz(10.0, 0.0125)).await;
+    browser.says(".derived", &hertz(10.0, 0.0125, 2.0)).await;
     browser.until(&format!("{BOXES}{FAULTS}.join('') === ''")).await;
 
     // Other boxes ask too, and none is read by the language of the browser.
@@ -87,8 +87,8 @@ async fn every_shape_body_and_preload_can_be_chosen() {
     assert_eq!(types.len(), document["components"]["schemas"]["Profile"]["oneOf"].as_array().unwrap().len());
     let shapes = types.iter().map(|kind| ("Shape of the indenter", kind.as_str(), "/profile/type", json!(kind)));
     let bodies = [
-        ("Elasticity", "two", "/material/bodies/1/poisson_ratio", json!(0.3)),
-        ("Elasticity", "effective", "/material/effective/e_star", json!(2.31e11)),
+        ("Elasticity", "rigid", "/material/bodies/1", json!("rigid")),
+        ("Elasticity", "effective", "/material/effective/e_star", json!(1.15e11)),
         ("Preload by", "indentation", "/preload/indentation", json!(1e-6)),
         ("Preload by", "contact_radius", "/preload/contact_radius", json!(1e-4)),
     ];

@@ -35,8 +35,9 @@ fn pascals(value: f64, count: usize) -> String {
     format!("{} {unit}", digits(value, count))
 }
 
-/// The contact radius of a steel ball of a radius on a rigid plane, by Hertz, in µm as the page shows it.
-fn hertz(force: f64, radius: f64) -> String {
-    let modulus = 2.1e11 / (1.0 - 0.3 * 0.3);
+/// The contact radius of a steel ball of a radius on `bodies` that yield, its own among them, by Hertz, in µm as the
+/// page shows it.
+fn hertz(force: f64, radius: f64, bodies: f64) -> String {
+    let modulus = 2.1e11 / (1.0 - 0.3 * 0.3) / bodies;
     format!("{} µm", four(1e6 * (3.0 * force * radius / (4.0 * modulus)).cbrt()))
 }

@@ -8,6 +8,7 @@ import { rememberedTurns } from "../../src/page/contact_plots.js";
 import { amountOf } from "../../src/page/crack_criteria.js";
 import { latestOnly } from "../../src/page/dom.js";
 import { isEccentric, meanPressure, peaksOf, zonesOf } from "../../src/page/line_contact.js";
+import { pythonCode } from "../../src/page/python_code.js";
 import { gridPoints } from "../../src/page/section_plot.js";
 import { addressOf, contactAddress } from "../../src/page/tabs.js";
 import * as units from "../../src/page/units.js";
@@ -173,4 +174,39 @@ test("of the calls during a run only the last is made, and only its error counts
   await first;
   assert.deepEqual(made, [1, 3]);
   await assert.rejects(work(2));
+});
+
+test("requests are written in Python as the package takes them", () => {
+  const contact = { profile: { type: "sphere", radius: 0.01 }, friction: 0.3, preload: { normal_force: 20 } };
+  const calls = [
+    { method: "GET", path: "/contacts/7" },
+    { method: "GET", path: "/contacts/7/stress?points=300&residual=true&fields=pressure,shear" },
+    { method: "POST", path: "/contacts/7/move", body: { displacement: 1e-7 } },
+    { method: "POST", path: "/contacts/7/relax", body: { reversals: 20, dry_run: true } },
+    { method: "GET", path: "/contacts/7/history?limit=1000" },
+    {
+      method: "POST",
+      path: "/simulate",
+      body: { contact, path: { falling_amplitude: { reversals: 20 } }, residual: true, solver: undefined },
+    },
+    { method: "POST", path: "/fit", body: { contact, loops: [{ force: [1, null] }] } },
+  ];
+  const definition =
+    '{"profile": {"type": "sphere", "radius": 0.01}, "friction": 0.3, "preload": {"normal_force": 20}}';
+  assert.equal(
+    pythonCode(calls, "http://localhost:8080", false),
+    `import stickslip as ss
+
+api = ss.connect("http://localhost:8080")
+contact = api.open("7")
+print(contact.state)
+print(contact.stress(points=300, residual=True, fields=["pressure", "shear"]))
+print(contact.move(displacement=1e-7))
+print(contact.relax(reversals=20, dry_run=True))
+print(contact.history())
+print(api.simulate(${definition}, falling_amplitude={"reversals": 20}, residual=True))
+print(api.fit_loop(${definition}, loops=[{"force": [1, None]}]))`,
+  );
+  assert.match(pythonCode([], "https://lab", true), /^import os\n\nimport .*key=os.environ\["STICKSLIP_KEY"\]\)$/s);
+  assert.match(pythonCode([{ method: "POST", path: "/contacts", body: contact }], "", false), /from_definition/);
 });
