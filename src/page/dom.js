@@ -1,4 +1,5 @@
 // Helpers that make elements, show notices, and limit how often work runs.
+import { MEANINGS } from "./meanings.js";
 
 /** An element: attributes, handlers (`onclick`), properties (`value`), then children.
  * @template {keyof HTMLElementTagNameMap} Name
@@ -35,8 +36,9 @@ export function svg(name, attributes = {}, ...children) {
 export const withSubscripts = (text) =>
   text.split(/(_\w+)/).map((part) => (part.startsWith("_") ? el("sub", {}, part.slice(1)) : part));
 
-/** A row in a list of figures. */
-export const figure = (name, value) => el("div", {}, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
+/** A row in a list of figures, with what it means. */
+export const figure = (name, value) =>
+  el("div", { title: MEANINGS[name] }, el("dt", {}, withSubscripts(name)), el("dd", {}, value));
 
 /** The same as children of a text in a drawing. */
 export function svgWithSubscripts(text) {

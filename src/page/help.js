@@ -1,5 +1,6 @@
 // What the page can do, and what its figures mean: the view of the address `#/help`.
 import { el, withSubscripts } from "./dom.js";
+import { MEANINGS } from "./meanings.js";
 
 /** The questions of the tabs, and where each is answered. */
 const QUESTIONS = [
@@ -9,21 +10,6 @@ const QUESTIONS = [
   ["How much does it damp, and what will wear?", "Damping: a steady cycle, a fretting map, a mass on the contact."],
   ["Which stress remains, and which motion removes it?", "Residual stress: protocols, and how much they leave."],
   ["How sure are the numbers?", "Accuracy: the stated errors, the warnings, and the solvers beside each other."],
-];
-
-/** The figures, and what they mean. */
-const FIGURES = [
-  ["Displacement U, force F", "Positive along x, the direction of the motion of the first body."],
-  ["Load F_N, indentation d", "Positive when the bodies are pressed together."],
-  ["Contact radius a, stick radius c", "Inside c nothing slipped in the last move; between c and a it did."],
-  ["Friction limit μ F_N", "The largest force; at it the whole contact slides, and its history is erased."],
-  ["Slip history", "The turning points that the contact remembers. A move beyond one closes its loop and erases it."],
-  ["Friction work W, stored energy", "Friction work only grows. The stored energy is released on unloading."],
-  ["Secant stiffness", "Force amplitude over displacement amplitude of a steady cycle."],
-  ["Loss factor", "Friction work of a cycle over 2π times the largest stored energy."],
-  ["Margin", "The limit that you gave over the largest value. Above one is no proof that a part is safe."],
-  ["Residual stress, of μ p_max", "The largest shear stress that remains, over friction times the largest pressure."],
-  ["Warnings", "Where the model does not hold for this contact, and by how much."],
 ];
 
 const list = (rows) =>
@@ -39,7 +25,7 @@ export function showHelp(main) {
   main.replaceChildren(
     el("h1", {}, "Help"),
     el("section", { class: "card" }, el("h2", {}, "By question"), list(QUESTIONS)),
-    el("section", { class: "card" }, el("h2", {}, "What the figures mean"), list(FIGURES)),
+    el("section", { class: "card" }, el("h2", {}, "What the figures mean"), list(Object.entries(MEANINGS))),
     el(
       "section",
       { class: "card" },

@@ -110,7 +110,7 @@ fn every_letter_of_an_equation_is_a_symbol_that_the_equation_of_its_row_introduc
         let cells: Vec<&str> = row.trim_matches('|').split(" | ").collect();
         let symbols: Vec<&str> = cells[0].split('$').skip(1).step_by(2).collect();
         known.extend(symbols.iter().flat_map(|symbol| letters(symbol)));
-        let numbers = || cells[4].split(", ").filter_map(|number| number.trim().parse::<usize>().ok());
+        let numbers = || cells.last().unwrap().split(", ").filter_map(|number| number.trim().parse::<usize>().ok());
         let has = |number: usize, symbol: &str| equations[number - 1].has(symbol);
         for number in numbers() {
             assert!(symbols.iter().any(|symbol| has(number, symbol)), "({number}) has none of {}", cells[0]);

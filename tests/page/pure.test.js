@@ -1,5 +1,6 @@
 // The parts of the page that need no browser.
 import assert from "node:assert/strict";
+import { readFileSync, readdirSync } from "node:fs";
 import test from "node:test";
 
 import { Axis, dataRange, nearestIndex } from "../../src/page/axis.js";
@@ -7,6 +8,7 @@ import { columnsOf, csvText } from "../../src/page/chart_menu.js";
 import { rememberedTurns } from "../../src/page/contact_plots.js";
 import { amountOf } from "../../src/page/crack_criteria.js";
 import { latestOnly } from "../../src/page/dom.js";
+import { MEANINGS } from "../../src/page/meanings.js";
 import { isEccentric, meanPressure, peaksOf, zonesOf } from "../../src/page/line_contact.js";
 import { pythonCode } from "../../src/page/python_code.js";
 import { gridPoints } from "../../src/page/section_plot.js";
@@ -209,4 +211,11 @@ print(api.fit_loop(${definition}, loops=[{"force": [1, None]}]))`,
   );
   assert.match(pythonCode([], "https://lab", true), /^import os\n\nimport .*key=os.environ\["STICKSLIP_KEY"\]\)$/s);
   assert.match(pythonCode([{ method: "POST", path: "/contacts", body: contact }], "", false), /from_definition/);
+});
+
+test("every meaning is that of a figure of the page", () => {
+  const folder = new URL("../../src/page/", import.meta.url);
+  const scripts = readdirSync(folder).filter((name) => name.endsWith(".js") && name !== "meanings.js");
+  const shown = scripts.map((name) => readFileSync(new URL(name, folder), "utf8")).join("");
+  for (const name of Object.keys(MEANINGS)) assert.ok(shown.includes(`"${name}"`), name);
 });

@@ -369,3 +369,31 @@ async fn pictures_of_the_documentation() {
     browser.picture("narrow").await;
     scene.end(&[]).await;
 }
+
+#[tokio::test]
+async fn figures_say_what_they_mean_and_the_help_lists_them() {
+    let scene = Scene::start().await;
+    let browser = &scene.browser;
+    scene.moved(&[0.5]).await;
+    scene.open(&scene.ball, "").await;
+    let said = "[...document.querySelectorAll('.state-text [title]')].map((row) => row.title).join()";
+    browser.until(&format!("{said}.includes('The work that friction has dissipated so far')")).await;
+    browser.click("nav a[href='#/help']").await;
+    browser.says("h1", "Help").await;
+    browser.says("main", "The work that friction has dissipated so far").await;
+    axe::assert_readable(browser, "help").await;
+    scene.end(&[]).await;
+}
+
+/// A fretting map takes milliseconds: nobody has to ask for it.
+#[tokio::test]
+async fn what_takes_little_time_is_there_before_a_button_is_pressed() {
+    let scene = Scene::start().await;
+    let browser = &scene.browser;
+    scene.moved(&[0.5]).await;
+    scene.open(&scene.ball, "/damping").await;
+    browser.until("document.querySelectorAll('#plot-map .line').length > 3").await;
+    browser.click("#to-residual").await;
+    browser.says("#search-figures", "Remains").await;
+    scene.end(&[]).await;
+}
