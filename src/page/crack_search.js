@@ -184,10 +184,10 @@ export function crackCard(model) {
       body.element,
       ...(poisson ? [poisson.element] : []),
       ...criteria.elements,
-      el("details", {}, el("summary", {}, "Critical distance"), distance.element, method.element),
+      el("details", { class: "distance" }, el("summary", {}, "Critical distance"), distance.element, method.element),
       el(
         "details",
-        {},
+        { class: "bulk" },
         el("summary", {}, "Bulk stress of the body, and accuracy"),
         model.hasBulk
           ? el("p", { class: "note" }, "The bulk stress of the contact is included already; enter only what is added.")

@@ -123,7 +123,7 @@ function ring(x, y, outer, inner) {
 }
 
 /** The width of a small plot, pixels. */
-const SMALL = 400;
+const SMALL = 300;
 
 /** The legend of the colours. */
 export function colourScale(plot, full) {

@@ -19,30 +19,30 @@ async fn a_contact_follows_while_one_types_and_all_faults_are_shown_at_once_in_w
     browser.write(CARD, "20").await;
     browser.says(".derived", &hertz(10.0, 0.02, 2.0)).await;
     browser.picture("new").await;
-    // Radius, Young's modulus, Poisson's ratio, friction and load.
-    let write = async |texts: [&str; 5]| {
+    // Radius, Young's modulus and Poisson's ratio of both bodies, friction and load.
+    let write = async |texts: [&str; 7]| {
         let all = format!(
             "{BOXES}.map((box, index) => {{ box.value = {}[index]; \
              box.dispatchEvent(new Event('input', {{ bubbles: true }})); }}).length",
             json!(texts)
         );
-        assert_eq!(browser.value(&all).await, 5);
+        assert_eq!(browser.value(&all).await, 7);
     };
     // Every field asks what a comma before three digits separates; which texts those are, `pure.test.js` has.
     let question = "Write 1.000 or 1000: 1,000 may be either.";
-    write(["1,000"; 5]).await;
+    write(["1,000"; 7]).await;
     browser.until(&format!("{BOXES}{FAULTS}.every((fault) => fault === {question:?})")).await;
     browser.click("#create").await;
-    write(["10 mm", "210", "0,300", "-0.3", ""]).await;
+    write(["10 mm", "210", "0,300", "210", "0,300", "-0.3", ""]).await;
     browser.click("#create").await;
     let expected = |index: usize, fault: &str| format!("{BOXES}{FAULTS}[{index}].includes({fault:?})");
-    for (index, fault) in [(0, NOT_A_NUMBER), (3, "out of range"), (4, "A number is missing here.")] {
+    for (index, fault) in [(0, NOT_A_NUMBER), (5, "out of range"), (6, "A number is missing here.")] {
         browser.until(&expected(index, fault)).await;
     }
     browser.picture("faults").await;
     assert_eq!(scene.server.client.contacts(None, None).await.unwrap().items.len(), 1, "the form waits for answers");
     // These are one number each: thousands have three digits in a group, and no group begins with 0.
-    write(["12,5", "210", "0,300", "0,3", "1000,000e-2"]).await;
+    write(["12,5", "210", "0,300", "210", "0,300", "0,3", "1000,000e-2"]).await;
     browser.says(".derived", &hertz(10.0, 0.0125, 2.0)).await;
     browser.until(&format!("{BOXES}{FAULTS}.join('') === ''")).await;
 

@@ -52,6 +52,7 @@ async fn scan_a_file_of_an_instrument_becomes_the_contact_radius() {
     browser.click("#new").await;
     browser.find("form select").await;
     browser.choose("Shape of the indenter", "tabulated").await;
+    browser.choose("Elasticity", "rigid").await;
     // Pasted: a ball of 10 mm, 7 µm off the middle, upside down, with a header; 1 nm up and down of noise.
     let row = |index: i32| {
         let x = f64::from(index) * 2.0 - 120.0;
@@ -186,8 +187,8 @@ async fn crack_a_file_of_a_contact_becomes_the_margin_of_a_criterion() {
     browser.set(&field("findley", 2), "2000").await;
     // A bulk stress, and a cycle of half of gross slip.
     browser.unfold("#crack-card details").await;
-    browser.set("#crack-card details .field:nth-of-type(1) input", "50").await;
-    browser.set("#crack-card details .field:nth-of-type(2) input", "40").await;
+    browser.set("#crack-card .bulk .field:nth-of-type(1) input", "50").await;
+    browser.set("#crack-card .bulk .field:nth-of-type(2) input", "40").await;
     browser.click("#compute-crack").await;
     browser.find("#plot-crack .shade").await;
     let path = json!({"cycles": {"displacement": scene.half_slip(), "count": 1}});
@@ -224,6 +225,24 @@ async fn crack_a_file_of_a_contact_becomes_the_margin_of_a_criterion() {
     let expected = 0.5 + 0.5 * number(&largest["point"][0]) / half;
     assert!((place[0] - expected).abs() < 1e-3 && place[1] > 4.0, "{place:?} instead of {expected}");
     axe::assert_readable(browser, "journey-crack").await;
+
+    // The critical distance, and a life by Basquin's curve.
+    browser.set("#crack-card .distance input", "20").await;
+    for (index, text) in [(1, "200"), (2, "1e6"), (3, "8")] {
+        let life = format!("#crack-card fieldset:has([name=crossland]) details .field:nth-of-type({index}) input");
+        browser.set(&life, text).await;
+    }
+    browser.click("#compute-crack").await;
+    let mut body = body;
+    body["critical_distance"] = json!({"length": 2e-5, "method": "point"});
+    body["criteria"]["crossland"]["life"] = json!({"s_n": {"reference": 2e8, "cycles": 1e6, "exponent": 8}});
+    let reply = scene.asked("/fretting", &body).await;
+    let below = &reply["crossland"]["critical_distance"];
+    let [value, margin] = ["value", "margin"].map(|name| number(&below[name]));
+    let text = format!("At the critical distance {} MPa, margin {}.", four(value / 1e6), three(margin));
+    browser.says("#verdict-crossland", &text).await;
+    let text = browser.text("#verdict-crossland").await;
+    assert!(text.contains("Life ") && text.contains("lives scatter by a factor of three"), "{text}");
     scene.end(&[]).await;
 }
 

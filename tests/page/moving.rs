@@ -67,7 +67,7 @@ async fn a_contact_is_made_moved_reloaded_and_followed() {
     let step = Move { normal_force: Some(15.0), displacement: Some(5e-8), ..Move::default() };
     server.client.apply(id, &MoveRequest::from(step), &Options::default()).await.unwrap();
     browser.until("document.querySelector('#box-displacement').value === '50'").await;
-    browser.says(".side", &hertz(15.0, 0.01, 1.0)).await;
+    browser.says(".side", &hertz(15.0, 0.01, 2.0)).await;
     server.client.delete(id, &Options::default()).await.unwrap();
     browser.says(".badge", "deleted").await;
     // What was asked of the contact while it was deleted is logged.

@@ -45,6 +45,9 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
             if *view == contact {
                 browser.counts(".plot .slipping", 1).await;
             }
+            if view.ends_with("damping") {
+                browser.find("#plot-map .line").await;
+            }
             // On a phone the controls stay in reach, wherever the page is scrolled to.
             let follows = view.starts_with(&contact) && !["loop", "accuracy"].iter().any(|tab| view.ends_with(tab));
             for part in if follows && width < 400 { &[0.0, 0.4, 0.8][..] } else { &[] } {
@@ -70,7 +73,7 @@ async fn it_fits_small_windows_and_dark_rooms_and_needs_no_mouse() {
             browser.picture(&format!("{name}-{part}")).await;
         }
         // Both axes of every plot are named, and have their unit but where they count.
-        assert_eq!(titles.len(), 5);
+        assert_eq!(titles.len(), 6);
         for title in titles.iter().flatten() {
             assert!(title == "Move" || title.ends_with(')'), "{title}");
         }
