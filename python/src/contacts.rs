@@ -13,8 +13,6 @@ use super::interrupt::interruptible;
 use super::problem::refused;
 use super::stepped::{Numbers, Pair, Shares, Stepped, copies, pair, rows, setup};
 
-/// A displacement beyond which the part that still sticks is looked at, over that of gross slip.
-const PROBE: f64 = 1e-12;
 /// Contacts that are worth a thread of their own.
 const LEAST_SHARE: usize = 256;
 
@@ -140,10 +138,7 @@ impl Contacts {
         let contacts = if self.contacts.trial.is_empty() { &self.contacts.committed } else { &self.contacts.trial };
         let direction = if upwards { 1.0 } else { -1.0 };
         let all = py.detach(|| {
-            contacts
-                .iter()
-                .map(|contact| stiffness(contact, direction))
-                .collect::<Result<(Vec<f64>, Vec<f64>), Error>>()
+            contacts.iter().map(|contact| contact.stiffness(direction)).collect::<Result<(Vec<f64>, Vec<f64>), Error>>()
         });
         let refusal = |error: Error| refused(Refusal::new(Code::InvalidInput, error.to_string()));
         Ok(pair(py, all.map_err(refusal)?.into()))
@@ -250,19 +245,4 @@ fn move_share(
         (*normal, *tangential) = (contact.normal_force(), contact.force());
     }
     Ok(())
-}
-
-/// Normal and tangential stiffness, N/m: each spring that does not slip adds its own, so that the tangential one is
-/// that of a punch as large as the part that sticks.
-fn stiffness(contact: &Contact, direction: f64) -> Result<(f64, f64), Error> {
-    let elasticity = contact.elasticity();
-    let normal = 2.0 * elasticity.e_star() * contact.contact_radius();
-    let probe = direction * PROBE * contact.gross_slip_displacement();
-    if probe == 0.0 {
-        return Ok((normal, 0.0));
-    }
-    let mut moved = contact.clone();
-    let tangential = Some(Tangential::Displacement(probe));
-    moved.apply(&Move { tangential, normal: None, relative: true })?;
-    Ok((normal, 2.0 * elasticity.g_star() * moved.state().stick_radius))
 }

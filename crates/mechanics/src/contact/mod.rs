@@ -2,11 +2,13 @@
 //! stresses in `surface`.
 
 pub(crate) mod accuracy;
+mod fixed;
 pub(crate) mod normal;
 pub(crate) mod packed;
 mod results;
 mod shear_strength;
 pub(crate) mod state;
+mod stiffness;
 
 use std::sync::Arc;
 
@@ -160,6 +162,23 @@ impl Contact {
     pub(crate) fn clone_without_history(&self) -> Contact {
         let (indenter, strength) = (Arc::clone(&self.indenter), self.strength.clone());
         Contact { indenter, history: SlipHistory::default(), strength, ..*self }
+    }
+
+    /// Becomes a copy of `other`, a contact of the same definition, in the memory that it has: without a new allocation
+    /// unless the history of `other` is longer than any that it has had.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let mut trial = contact.clone();
+    /// trial.apply(&slide(0.001))?;
+    /// trial.copy_from(&contact);
+    /// assert_eq!(trial.state(), contact.state());
+    /// # Ok::<(), Error>(())
+    /// ```
+    pub fn copy_from(&mut self, other: &Contact) {
+        let mut history = std::mem::take(&mut self.history);
+        history.copy_from(&other.history);
+        *self = Contact { history, ..other.clone_without_history() };
     }
 
     /// The contact before its first move, at an indentation, m, and the normal force, N, that belongs to it; without a

@@ -25,8 +25,14 @@ pub const ENGINE: u16 = 18;
 /// The version of the arrangement of the bytes.
 const LAYOUT: u16 = 1;
 
+/// Writes the versions that bytes begin with.
+pub(crate) fn write_versions(bytes: &mut Vec<u8>) {
+    bytes.extend_from_slice(&LAYOUT.to_le_bytes());
+    bytes.extend_from_slice(&ENGINE.to_le_bytes());
+}
+
 /// Reads the versions at the beginning, and compares them with those of this program.
-fn is_current(reader: &mut Reader<'_>) -> bool {
+pub(crate) fn is_current(reader: &mut Reader<'_>) -> bool {
     [LAYOUT, ENGINE].into_iter().all(|version| reader.bytes() == Some(version.to_le_bytes()))
 }
 
@@ -60,8 +66,7 @@ impl Contact {
     #[must_use]
     pub fn pack(&self) -> Vec<u8> {
         let mut bytes = Vec::with_capacity(self.packed_length());
-        bytes.extend_from_slice(&LAYOUT.to_le_bytes());
-        bytes.extend_from_slice(&ENGINE.to_le_bytes());
+        write_versions(&mut bytes);
         self.definition_marks().iter().for_each(|mark| mark.pack(&mut bytes));
         self.displacement.pack(&mut bytes);
         self.normal_force.pack(&mut bytes);
@@ -118,7 +123,7 @@ impl Contact {
     }
 
     /// Numbers that distinguish contacts of different definitions, and machines that compute a preload differently.
-    fn definition_marks(&self) -> [f64; 4] {
+    pub(crate) fn definition_marks(&self) -> [f64; 4] {
         let (hi, lo) = self.inverse_scale.parts();
         [self.preload.0.value(), self.preload.1, hi, lo]
     }

@@ -5,6 +5,8 @@
 //! equal area have the matrix of [`Mesh`] for m, whatever the contact was divided into. The state is the force on each
 //! ring, which would be tau + K dU if all rings stuck, and so includes the slip of all steps before.
 
+mod packed;
+
 use std::sync::{Arc, OnceLock};
 
 use super::load::beyond;

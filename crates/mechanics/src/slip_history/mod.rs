@@ -11,6 +11,7 @@
 //! The cost of a move is constant on average, whatever came before; nothing is discretised, and turning points are kept
 //! as absolute positions, so no error accumulates.
 
+mod bounded;
 mod friction_work;
 mod instants;
 pub(crate) mod limit;
@@ -63,6 +64,15 @@ impl SlipHistory {
     /// The same virgin contact where the scaled displacement is `position`, m.
     pub(super) fn at_position(self, position: DoubleDouble) -> SlipHistory {
         SlipHistory { position, reference: position, ..self }
+    }
+
+    /// Becomes a copy of `other` in the memory that it has; no move is under way.
+    pub(super) fn copy_from(&mut self, other: &SlipHistory) {
+        self.pieces.clone_from(&other.pieces);
+        self.mark = None;
+        let &SlipHistory { edge, total, position, reference, slip_from, .. } = other;
+        (self.edge, self.total, self.slip_from) = (edge, total, slip_from);
+        (self.position, self.reference) = (position, reference);
     }
 
     /// Whether nothing has moved it since it touched, or all of it slides along unloaded: w = 0 everywhere.

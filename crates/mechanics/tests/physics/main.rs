@@ -1,6 +1,7 @@
 //! The physics tests, one program: each module holds the solver against closed forms, laws or an independent reference.
 
 mod accuracy;
+mod bounded_history;
 mod closed_cycles;
 mod closed_loops;
 mod coarse_tables;
