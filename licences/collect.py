@@ -10,7 +10,7 @@ from collections import defaultdict
 from pathlib import Path
 
 HERE = Path(__file__).parent
-PACKAGES = ["stickslip", "stickslip-python"]
+PACKAGES = ["stickslip", "stickslip-ffi", "stickslip-python"]
 TARGETS = ["x86_64-unknown-linux-gnu", "x86_64-unknown-linux-musl"]
 #: Licences, as they are preferred, and parts of the names of their files.
 CHOICE = {"MIT": "MIT", "ISC": "ISC", "BSD-3-Clause": "BSD", "Zlib": "ZLIB", "Apache-2.0": "APACHE"}

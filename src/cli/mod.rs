@@ -5,6 +5,7 @@ mod check;
 mod command_error;
 mod compute;
 mod demo;
+mod fmu;
 mod healthcheck;
 mod io;
 mod key;
@@ -30,6 +31,7 @@ use backup::Backup;
 use check::Check;
 use compute::Compute;
 use demo::Demo;
+use fmu::Fmu;
 use healthcheck::Healthcheck;
 use io::print;
 use key::Key;
@@ -60,6 +62,8 @@ enum Command {
     Compute(Compute),
     /// Run the body of POST /sweep from a file and print the table.
     Sweep(Sweep),
+    /// Write a contact as an FMU, for co-simulation by FMI 2.0.
+    Fmu(Fmu),
     /// Print the OpenAPI document.
     Openapi,
     /// Check that a running service is healthy, for containers.
@@ -130,6 +134,7 @@ impl Command {
             Command::Config(_) => print(settings),
             Command::Compute(compute) => compute.run(),
             Command::Sweep(sweep) => sweep.run(),
+            Command::Fmu(fmu) => fmu.run(),
             Command::Openapi => print(api::document().trim_end()),
             Command::Healthcheck(options) => healthcheck::healthcheck(&options),
             Command::Key(key) => key::key(key),

@@ -8,6 +8,7 @@ mod dashboards;
 mod docs;
 mod equations;
 mod examples;
+mod fmu;
 mod node;
 mod page_forms;
 mod printed;

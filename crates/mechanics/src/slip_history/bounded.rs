@@ -1,8 +1,8 @@
 //! The history in a fixed number of doubles, for programs that keep so many for each contact.
 //!
 //! Over the level y the displacement w is straight between turning points and zero at the edge, so that the levels of
-//! the turning points and the slopes beyond them are all of it. Where there are more of them than fit, the smallest loop
-//! is cut off, one after the other: of all turning points the one goes whose loss changes the force least, and w becomes
+//! the turning points and the slopes beyond them are all of it. Where there are more of them than fit, the smallest
+//! loops are cut off one by one: of all turning points the one goes whose loss changes the force least, and w becomes
 //! straight between its neighbours. Three things hold whatever is left out:
 //!
 //! - |w| <= d - y, because the bound is straight, too, and so |F| <= mu F_N;

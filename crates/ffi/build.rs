@@ -1,0 +1,8 @@
+//! Names the shared library as it is installed.
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    if std::env::var("CARGO_CFG_TARGET_OS").is_ok_and(|system| system == "linux") {
+        println!("cargo:rustc-cdylib-link-arg=-Wl,-soname,libstickslip.so.0");
+    }
+}
