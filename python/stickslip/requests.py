@@ -108,8 +108,7 @@ def _loop_fit(given: Document) -> Document:
     measured, units = loops(given.get("loops", []), given.pop("units", None))
     start = given.pop("start", None)
     given["loops"] = [loop if start is None else loop | {"start": start} for loop in measured]
-    free = ["friction", "g_star", "force_offset"]
-    return {"free": free} | given | ({} if units is None else {"units": units})
+    return given | ({} if units is None else {"units": units})
 
 
 def _profile_fit(given: Document) -> Document:

@@ -17,6 +17,8 @@ const PARAMETERS = {
   displacement_offset: ["zero of the displacement", "m", false],
   force_offset: ["zero of the force", "N", true],
   drift: ["drift of the displacement", "m/s", false],
+  delay: ["delay of the force", "s", false],
+  gain_drift: ["drift of the gain", "1/s", false],
   e_star: ["modulus E*", "Pa", false, true],
   radius: ["radius", "m", false, true],
 };
@@ -38,6 +40,8 @@ const SCALES = {
   m: prefixed("m", "µ", "n", "m", ""),
   N: prefixed("N", "", "m"),
   "m/s": prefixed("m/s", "n", "µ", ""),
+  s: prefixed("s", "", "m", "µ"),
+  "1/s": prefixed("1/s", ""),
 };
 const MOST_RECORDS = 16;
 /** Up to how many points of a record are drawn one by one. */
@@ -93,7 +97,14 @@ export function fittedLoop(model) {
     ([name, [, , , ofSphere]]) =>
       (!ofSphere || model.definition.profile.type === "sphere") && !(model.isLine && name === "g_star"),
   );
-  const boxes = offered.map(([name, [, , checked]]) => el("input", { type: "checkbox", name, checked }));
+  const decide = el("input", { type: "checkbox", name: "decide", checked: true });
+  // Whoever chooses has decided.
+  const choose = () => {
+    decide.checked = false;
+  };
+  const boxes = offered.map(([name, [, , checked]]) =>
+    el("input", { type: "checkbox", name, checked, onchange: choose }),
+  );
   const known = knownFields(form, offered);
   const noiseField = (name, units, unit) =>
     new NumberField(form, () => `/noise/${name}`, { label: `Noise of the ${name}`, units, unit, optional: true });
@@ -107,7 +118,7 @@ export function fittedLoop(model) {
       contact: model.definition,
       loops: records.map((record) => record.value(units)),
       units,
-      free: boxes.filter((box) => box.checked).map((box) => box.name),
+      free: decide.checked ? undefined : boxes.filter((box) => box.checked).map((box) => box.name),
       known: held.length ? Object.fromEntries(held) : undefined,
       noise: valuesOf(noise),
     };
@@ -193,6 +204,7 @@ export function fittedLoop(model) {
         "fieldset",
         {},
         el("legend", {}, "Quantities to fit"),
+        el("p", {}, el("label", {}, decide, " What the loops determine, or of these:")),
         el("div", { class: "row" }, ...boxes.map((box) => el("label", {}, box, ` ${PARAMETERS[box.name][0]}`))),
       ),
       el(

@@ -17,3 +17,4 @@ pub mod loops;
 mod quadratic_programme;
 mod robust;
 pub mod scan;
+mod steps;

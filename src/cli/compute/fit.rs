@@ -14,9 +14,6 @@ use crate::api::LoopFileQuery;
 use crate::cli::command_error::CommandError;
 use crate::cli::io::read;
 
-/// The free quantities if the command line names none.
-const USUALLY_FREE: [FitParameter; 3] = [FitParameter::Friction, FitParameter::GStar, FitParameter::ForceOffset];
-
 /// The flags for what a file of columns leaves open.
 #[derive(Args)]
 #[command(mut_arg("file", |file| file.help("The file, or - for standard input: columns of displacement and force as \
@@ -34,7 +31,7 @@ pub struct FitFlags {
     /// moved.
     #[arg(long, value_parser = one_of(&LoopStart::ALL, LoopStart::name))]
     start: Option<LoopStart>,
-    /// Quantities to determine, separated by commas [default: friction,g_star,force_offset].
+    /// Quantities to determine, separated by commas [default: what the loop determines].
     #[arg(long, value_delimiter = ',', value_parser = one_of(&FitParameter::ALL, FitParameter::name))]
     free: Vec<FitParameter>,
     /// Known values in SI units, such as machine_compliance=5e-8+-5e-9, separated by commas.
@@ -72,7 +69,7 @@ impl FitFlags {
             contact,
             loops: vec![measured],
             units: Some(found.units),
-            free: if self.free.is_empty() { USUALLY_FREE.to_vec() } else { self.free },
+            free: (!self.free.is_empty()).then_some(self.free),
             known: Some(known),
             noise: None,
         };

@@ -40,7 +40,7 @@ pub fn random_fit() -> impl Strategy<Value = RandomFit> {
     let parts = (amplitude, 0.2..5.0_f64, prop_oneof![Just(0.0), 0.0..3.0_f64], noise);
     let start = prop::option::of(select(vec!["steady", "virgin"]));
     let shape = (parts, 8..80_usize, 1..6_usize, prop::bool::weighted(0.1));
-    (contact(), subsequence(names, 1..=5), prop::option::of(known), start, shape).prop_map(
+    (contact(), subsequence(names, 0..=5), prop::option::of(known), start, shape).prop_map(
         |(contact, free, known, start, (parts, points, turns, mirrored))| RandomFit {
             contact,
             free,
@@ -74,10 +74,14 @@ impl RandomFit {
         if let Some(start) = self.start {
             record["start"] = json!(start);
         }
-        if self.free.contains(&"drift") {
+        if self.free.iter().any(|name| ["drift", "delay", "gain_drift"].contains(name)) {
             record["time"] = json!((0..self.points).collect::<Vec<_>>());
         }
-        let mut body = json!({"contact": self.contact, "loops": [record], "free": self.free});
+        let mut body = json!({"contact": self.contact, "loops": [record]});
+        // Without a list the loop decides.
+        if !self.free.is_empty() {
+            body["free"] = json!(self.free);
+        }
         if let Some((name, value)) = self.known {
             body["known"] = json!({name: {"value": value, "standard_error": 0.1 * value}});
         }

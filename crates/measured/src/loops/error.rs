@@ -79,9 +79,11 @@ pub enum Error {
         /// Of the contact as defined, N/m.
         expected: f64,
     },
-    /// A drift in time was asked for of a record without times.
-    #[error("a drift needs the times of the points")]
+    /// A parameter that only times determine was asked for of a record without times.
+    #[error("`{}` needs the times of the points", parameter.name())]
     NoTime {
+        /// Which parameter.
+        parameter: Parameter,
         /// Which record.
         record: usize,
     },

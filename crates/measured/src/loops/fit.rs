@@ -86,7 +86,7 @@ pub(super) fn fit(data: &mut Data, noise: Noise, proceed: &dyn Fn() -> bool) -> 
             let kept = |index: &usize| robust || weights.as_ref().is_none_or(|weights| weights[*index] > 0.0);
             let squares = |index: usize| [residual[index].powi(2), by_place[index]];
             let squares: Vec<[f64; 2]> = (0..ones.len()).filter(kept).map(squares).collect();
-            let freedom = squares.len().saturating_sub(data.layout.columns).max(1) as f64 / squares.len() as f64;
+            let freedom = squares.len().saturating_sub(data.layout.columns()).max(1) as f64 / squares.len() as f64;
             let given = noise.force.map(|noise| noise * noise);
             let [own, share] =
                 variances(&squares, if robust { 1.0 } else { freedom }, given, noise.displacement.is_some());
@@ -226,7 +226,7 @@ pub(super) fn within_bounds(
     control: &Control<'_>,
 ) -> Result<(Vec<f64>, f64, Vec<usize>), Error> {
     let layout = &data.layout;
-    let mut free: Vec<usize> = (0..layout.columns).filter(|column| !held.contains(column)).collect();
+    let mut free: Vec<usize> = (0..layout.columns()).filter(|column| !held.contains(column)).collect();
     let sought = |parameter: Parameter, free: &[usize]| layout.column(parameter).filter(|column| free.contains(column));
     let least = LEAST_COMPLIANCE / stiffness(&data.records[0].contact);
     let mut values = from.to_vec();

@@ -1,6 +1,6 @@
 //! How surely the values are known: standard errors from the Jacobian, intervals by profile likelihood.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::fit::{Fitted, within_bounds};
 use super::least_squares::{Control, Data};
@@ -36,7 +36,7 @@ impl Covariance {
             let value = fitted.values[column].abs();
             if data.logarithmic(column) && value > 0.0 { value } else { data.scales[column] }
         };
-        let columns = data.layout.columns;
+        let columns = data.layout.columns();
         if columns == 0 {
             return Ok(Covariance { matrix: DMatrix::zeros(0, 0), open: Vec::new() });
         }
@@ -85,6 +85,11 @@ impl Covariance {
         (errors > 0.0).then(|| (self.matrix[(a, b)] / errors).clamp(-1.0, 1.0))
     }
 
+    /// The product with a column of numbers.
+    pub(super) fn times(&self, column: &DVector<f64>) -> DVector<f64> {
+        &self.matrix * column
+    }
+
     /// Covariance of two columns.
     pub(super) fn of(&self, a: usize, b: usize) -> f64 {
         self.matrix[(a, b)]
@@ -102,7 +107,7 @@ pub(super) fn interval(
     proceed: &dyn Fn() -> bool,
 ) -> Result<[Option<f64>; 2], Error> {
     let Some(error) = covariance.error(column) else { return Ok([None; 2]) };
-    let quantile = quantile(fitted.used().saturating_sub(data.layout.columns), noise_known);
+    let quantile = quantile(fitted.used().saturating_sub(data.layout.columns()), noise_known);
     let value = fitted.values[column];
     let compliance = data.layout.column(Parameter::MachineCompliance) == Some(column);
     let logarithmic = data.logarithmic(column) && !compliance;

@@ -15,6 +15,8 @@ pub(super) struct Prior {
     pub(super) terms: Vec<(usize, f64)>,
     pub(super) value: f64,
     pub(super) standard_error: f64,
+    /// When a turning point that it is about was passed, s: by so many seconds of a drift its value moves.
+    pub(super) time: f64,
 }
 
 /// What is to be explained, and by which parameters.
@@ -30,7 +32,7 @@ pub(super) struct Data {
 impl Prior {
     /// Of one column.
     pub(super) fn new(column: usize, value: f64, standard_error: f64) -> Prior {
-        Prior { terms: vec![(column, 1.0)], value, standard_error }
+        Prior { terms: vec![(column, 1.0)], value, standard_error, time: 0.0 }
     }
 
     /// Gives its first column the value that agrees with the others.
@@ -97,7 +99,7 @@ impl Data {
     pub(super) fn rows(&self, values: &[f64], factors: &[f64]) -> Rows {
         let count = factors.len() + self.priors.len();
         let mut residual = DVector::zeros(count);
-        let mut jacobian = DMatrix::zeros(count, self.layout.columns);
+        let mut jacobian = DMatrix::zeros(count, self.layout.columns());
         let mut slopes = vec![0.0; factors.len()];
         let mut row = 0;
         for record in &self.records {
@@ -123,7 +125,7 @@ impl Data {
 
     /// Whether the logarithm of a column is sought.
     pub(super) fn logarithmic(&self, column: usize) -> bool {
-        self.layout.parameters.get(column).is_some_and(|parameter| parameter.positive())
+        self.layout.parameters[column].is_some_and(Parameter::positive)
     }
 
     /// The change of a value with its coordinate in the search.
@@ -235,10 +237,14 @@ pub(super) fn scales(layout: &Layout, records: &[Branches]) -> Vec<f64> {
     let way = most(|record| record.extremes[0].displacement - record.extremes[1].displacement);
     let time = most(|record| record.samples.last().map_or(0.0, |last| last.time - record.samples[0].time));
     let force = most(|record| record.half_force);
-    (0..layout.columns)
-        .map(|column| match layout.parameters.get(column) {
+    layout
+        .parameters
+        .iter()
+        .map(|parameter| match parameter {
             Some(Parameter::ForceOffset) => force,
             Some(Parameter::Drift) if time > 0.0 => way / time,
+            Some(Parameter::Delay) if time > 0.0 => time,
+            Some(Parameter::GainDrift) if time > 0.0 => 1.0 / time,
             _ => way,
         })
         .collect()

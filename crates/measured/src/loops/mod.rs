@@ -13,39 +13,47 @@
 //! fit that ignores the machine looks as good as one that does not. So a compliance that is neither sought nor known
 //! widens all intervals by all that it could be.
 //!
+//! What was not free is tested all the same: the score of each parameter that was left out, and what it would shift
+//! (`omitted`). Without a list of what is sought, the records decide (`search`).
+//!
 //! Forces in steps do not average out where the contact slides: what that may shift is added (`quantised`).
 //!
 //! SI units throughout.
 
 mod error;
 mod fit;
+mod gaps;
 mod identifiable;
 mod intervals;
 mod least_squares;
 mod loading_curve;
 mod model;
+mod omitted;
 mod outcome;
 mod parameter;
 mod prepare;
 mod quantised;
+mod randomness;
 mod record;
 mod result;
 mod reversals;
 mod sampled_curve;
+mod search;
 mod sense;
 mod start;
 #[cfg(test)]
 mod tests;
 mod turns;
+mod velocity;
 
 pub use error::Error;
 pub use parameter::Parameter;
-pub use result::{Curve, Estimate, Note, Residual, Runs};
+pub use result::{Curve, Estimate, Note, Omitted, Residual, Runs, Sensitivity};
 
-use loading_curve::LoadingCurve;
+use omitted::SIGNIFICANT;
 use outcome::{LeftOver, Uncertainty, fitted_contact, left_over};
 use prepare::prepare;
-use record::Branches;
+use search::Search;
 use stickslip_mechanics::Contact;
 
 /// Points that a record needs.
@@ -58,8 +66,8 @@ pub const MOST_REFINED_TURNS: usize = 64;
 const FEW_TURNS: usize = 8;
 /// A residual of this share of the force is rounding.
 const ROUNDING: f64 = 1e-9;
-/// A residual beyond so many times the noise given is not noise.
-const MORE_THAN_NOISE: f64 = 3.0;
+/// A residual below so many times the noise that was told may be that of the approximations for noise of displacements.
+const LEAST_EXCESS: f64 = 1.1;
 /// A record with fewer of its points on sticking branches slides nearly always.
 const FEW_STICKING: f64 = 0.1;
 
@@ -116,7 +124,7 @@ pub struct Task {
     pub contact: Contact,
     /// At least one.
     pub records: Vec<Record>,
-    /// What is sought; at least one, none twice.
+    /// What is sought, none twice; if there is none, what the records can tell.
     pub free: Vec<Parameter>,
     /// What is known better than the definition says, none twice. One with a standard error takes part in the fit.
     pub known: Vec<Known>,
@@ -127,16 +135,24 @@ pub struct Task {
 /// The fit.
 #[derive(Clone, Debug)]
 pub struct LoopFit {
+    /// What was sought: as given, or what the records can tell.
+    pub free: Vec<Parameter>,
     /// In the order of `free`, then what is known with a standard error.
     pub estimates: Vec<Estimate>,
     /// Of the estimates with each other; `None` where one of them is not determined.
     pub correlations: Vec<Vec<Option<f64>>>,
     /// What the data determine, by name, and what only in combination.
     pub identifiable: Vec<String>,
+    /// The parameters that were not free, with the score test of each.
+    pub omitted: Vec<Omitted>,
+    /// What small errors of the bench would do to the estimates.
+    pub sensitivity: Vec<Sensitivity>,
     /// What is left.
     pub residual: Residual,
     /// Standard deviations of force, N, and displacement, m: as given, or as estimated.
     pub noise: [f64; 2],
+    /// Root mean square of the residual over the noise of each point.
+    pub excess: f64,
     /// One a record.
     pub curves: Vec<Curve>,
     /// What to know of it.
@@ -183,66 +199,70 @@ pub struct LoopFit {
 /// # Errors
 /// [`Error`], which says what the records lack; [`Error::Interrupted`] as soon as `proceed` says no.
 pub fn fit(task: &Task, proceed: &dyn Fn() -> bool) -> Result<LoopFit, Error> {
-    let steps: Vec<Option<f64>> = task.records.iter().map(quantised::step).collect();
+    let task = Task { records: task.records.iter().map(record::without_doubles).collect(), ..task.clone() };
+    let steps: Vec<Option<f64>> = task.records.iter().map(|record| crate::steps::step(&record.force)).collect();
     let step = steps.iter().flatten().copied().fold(0.0, f64::max);
     // Rounding is noise too.
     let rounded = |noise: f64| if step > noise { noise.hypot(quantised::variance(step).sqrt()) } else { noise };
     let noise = Noise { force: task.noise.force.map(rounded), ..task.noise };
-    let mut data = prepare(task, false, None)?;
-    let mut fitted = fit::fit(&mut data, noise, proceed)?;
-    let mut drifts = None;
-    if let Some(column) = data.layout.column(Parameter::Drift) {
-        // Where the machine turns is seen after the drift is known.
-        drifts = Some(fitted.values[column]);
-        data = prepare(task, false, drifts)?;
-        fitted = fit::fit(&mut data, noise, proceed)?;
-    }
+    let (task, Search { data, fitted, preliminary }) = search::fit(task, noise, proceed)?;
+    let task = &task;
     let LeftOver { curves, residual, sticking, excess } = left_over(&data, &fitted)?;
-    let roundings = quantised::roundings(&steps, &curves);
-    let is_quantised = roundings.iter().any(Option::is_some);
+    let bench = data.layout.bench(&fitted.values);
+    let stiffness = record::stiffness(&task.contact) * bench.g_star / task.contact.elasticity().g_star();
+    let roundings = quantised::roundings(&data, &steps, &curves, stiffness);
+    let is_quantised = roundings.iter().any(|of| of.force.is_some());
+    let displacement_quantised = roundings.iter().any(|of| of.displacement.is_some());
     let compliance = Parameter::MachineCompliance;
     let compliance_unknown =
         !task.free.contains(&compliance) && !task.known.iter().any(|known| known.parameter == compliance);
-    let mut uncertainty = Uncertainty::new(task, &data, &fitted, &roundings, proceed)?;
+    let Uncertainty { mut estimates, mut correlations, mut identifiable, tests } =
+        Uncertainty::new(task, &data, &fitted, &roundings, proceed)?;
     if compliance_unknown {
         // What a compliance that may be anything leaves open is open.
-        let mut wider = prepare(task, true, drifts)?;
+        let mut wider = prepare(task, true, preliminary)?;
         let free = fit::fit(&mut wider, noise, proceed)?;
-        let own = std::mem::replace(&mut uncertainty, Uncertainty::new(task, &wider, &free, &roundings, proceed)?);
-        for (estimate, own) in uncertainty.estimates.iter_mut().zip(&own.estimates) {
-            let ([low, high], value) = (estimate.interval, own.value);
+        let open = Uncertainty::new(task, &wider, &free, &roundings, proceed)?;
+        for (estimate, open) in estimates.iter_mut().zip(&open.estimates) {
+            let ([low, high], value) = (open.interval, estimate.value);
             let interval = [low.map(|low| low.min(value)), high.map(|high| high.max(value))];
-            *estimate = Estimate { interval, value, at_bound: own.at_bound, ..*estimate };
+            *estimate = Estimate { interval, value, at_bound: estimate.at_bound, ..*open };
         }
+        (correlations, identifiable) = (open.correlations, open.identifiable);
     }
-    let Uncertainty { estimates, correlations, identifiable } = uncertainty;
-    let bench = data.layout.bench(&fitted.values);
     let largest_noise = data.records.iter().map(|record| record.noise).fold(0.0, f64::max);
     let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
-    let noisy = noise.force.is_some() && excess > MORE_THAN_NOISE;
+    let used = fitted.used().max(1) as f64;
+    let most_excess = (1.0 + SIGNIFICANT * (2.0 / used).sqrt()).sqrt().max(LEAST_EXCESS);
+    let exceeded = noise.force.is_some() && excess > most_excess;
     let steady_offset = task.free.contains(&Parameter::DisplacementOffset)
         && data.layout.column(Parameter::DisplacementOffset).is_none();
-    let slides = |record: &Branches| {
-        let half = 0.5 * (record.extremes[0].displacement - record.extremes[1].displacement);
-        half >= LoadingCurve::new(&record.contact, &record.curve, bench).gross_slip()
-    };
+    let omitted_parameter = tests.omitted.iter().any(Omitted::is_significant);
     let notes = [
         (compliance_unknown, Note::MachineComplianceUnknown),
-        (!data.records.iter().any(slides), Note::PartialSlipOnly),
+        (!data.records.iter().any(|record| record.slides(bench)), Note::PartialSlipOnly),
         (sticking < FEW_STICKING, Note::BeyondGrossSlip),
         (steady_offset || task.records.iter().any(|record| record.start.is_none()), Note::FirstBranchUnknown),
+        (omitted_parameter, Note::OmittedParameter),
+        (exceeded, Note::NoiseExceeded),
         // Rounding keeps its sign for long stretches too.
-        (noisy || (!residual.runs.random && residual.rms > ROUNDING * force && !is_quantised), Note::NotCoulomb),
+        (!residual.runs.random && residual.rms > ROUNDING * force && !is_quantised, Note::NotCoulomb),
         (is_quantised, Note::Quantised),
+        (displacement_quantised, Note::DisplacementQuantised),
+        (data.records.iter().any(|record| record.turn_in_gap), Note::TurnInGap),
         (!fitted.converged, Note::NotConverged),
         (data.records.iter().any(|record| record.turns[0].column.is_none()), Note::TurnsAsSampled),
     ];
     Ok(LoopFit {
+        free: task.free.clone(),
         estimates,
         correlations,
         identifiable,
+        omitted: tests.omitted,
+        sensitivity: tests.sensitivity,
         residual,
         noise: [fitted.force_noise, largest_noise * fitted.displacement_share.sqrt()],
+        excess,
         curves,
         notes: notes.into_iter().filter_map(|(applies, note)| applies.then_some(note)).collect(),
         // A search that has run away has not found anything.

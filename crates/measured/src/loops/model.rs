@@ -14,19 +14,26 @@ use super::{Parameter, Start};
 /// The parameters and where each of them is in a gradient.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
-    /// In the order of their columns.
-    pub(super) parameters: Vec<Parameter>,
+    /// That of each column; `None` of a turning point.
+    pub(super) parameters: Vec<Option<Parameter>>,
     /// Values of those that are not sought.
     pub(super) held: [f64; Parameter::ALL.len()],
-    /// Columns, those of the turning points behind the parameters.
-    pub(super) columns: usize,
     /// Values by which modulus, reduced modulus and radius are those of the definition.
     pub(super) defined: [f64; Parameter::ALL.len()],
 }
 
 impl Layout {
     pub(super) fn column(&self, parameter: Parameter) -> Option<usize> {
-        self.parameters.iter().position(|&one| one == parameter)
+        self.parameters.iter().position(|&one| one == Some(parameter))
+    }
+
+    pub(super) fn columns(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// The parameters with columns, and these.
+    pub(super) fn sought(&self) -> impl Iterator<Item = (usize, Parameter)> {
+        self.parameters.iter().enumerate().filter_map(|(column, &parameter)| Some((column, parameter?)))
     }
 
     /// The value of a parameter.
@@ -74,6 +81,8 @@ struct Anchor {
 struct Walk<'a> {
     layout: &'a Layout,
     values: &'a [f64],
+    /// The delay that the displacements of the samples allow for, s.
+    delay: f64,
     curve: LoadingCurve<'a>,
     /// Where first loading began.
     origin: Anchor,
@@ -90,23 +99,33 @@ pub(super) fn predict(
 ) {
     let curve = LoadingCurve::new(&branches.contact, &branches.curve, layout.bench(values));
     let origin =
-        Anchor { place: 0.0, force: 0.0, place_by: vec![0.0; layout.columns], force_by: vec![0.0; layout.columns] };
-    let mut walk = Walk { layout, values, curve, origin, memory: Vec::new() };
+        Anchor { place: 0.0, force: 0.0, place_by: vec![0.0; layout.columns()], force_by: vec![0.0; layout.columns()] };
+    let mut walk = Walk { layout, values, delay: branches.delay, curve, origin, memory: Vec::new() };
     if branches.start == Start::Steady {
         walk.start_within(branches);
     }
-    let (mut branch, mut gradient, mut place_by) = (0, vec![0.0; layout.columns], vec![0.0; layout.columns]);
-    let force_offset = layout.value(values, Parameter::ForceOffset);
+    let (mut branch, mut gradient, mut place_by) = (0, vec![0.0; layout.columns()], vec![0.0; layout.columns()]);
+    let [force_offset, gain_drift] =
+        [Parameter::ForceOffset, Parameter::GainDrift].map(|one| layout.value(values, one));
+    let [offset_column, gain_column] = [Parameter::ForceOffset, Parameter::GainDrift].map(|one| layout.column(one));
     for sample in &branches.samples {
         while branch < sample.branch {
             walk.turn(&branches.turns[branch], branches.direction(branch));
             branch += 1;
         }
-        let place = walk.place(sample.displacement + sample.shift, sample.time, None, &mut place_by);
+        let place = walk.place(sample.displacement + sample.shift, [sample.time, sample.rate], None, &mut place_by);
         let reached = walk.reached(place, branches.direction(branch));
         let mut predicted = walk.force(reached, (place, &place_by), branches.direction(branch), &mut gradient);
-        predicted.force += force_offset - sample.by_shift;
-        if let Some(column) = layout.column(Parameter::ForceOffset) {
+        let gain = 1.0 + gain_drift * sample.time;
+        if gain_drift.abs() > 0.0 {
+            gradient.iter_mut().for_each(|by| *by *= gain);
+        }
+        if let Some(column) = gain_column {
+            gradient[column] += predicted.force * sample.time;
+        }
+        predicted =
+            Predicted { force: gain * predicted.force + force_offset - sample.by_shift, slope: gain * predicted.slope };
+        if let Some(column) = offset_column {
             gradient[column] += 1.0;
         }
         row(sample, predicted, &gradient);
@@ -114,15 +133,18 @@ pub(super) fn predict(
 }
 
 impl Walk<'_> {
-    /// The displacement of the machine behind a measured one, and its gradient. A column of its own has no drift.
-    fn place(&self, displacement: f64, mut time: f64, own: Option<usize>, by: &mut [f64]) -> f64 {
+    /// The displacement of the machine behind one that was measured at this time and velocity, and its gradient. A
+    /// column of its own has no drift.
+    fn place(&self, displacement: f64, at: [f64; 2], own: Option<usize>, by: &mut [f64]) -> f64 {
         by.fill(0.0);
-        let mut place = displacement;
+        let (mut place, [mut time, rate]) = (displacement, at);
         if let Some(column) = own {
             (place, time) = (self.values[column], 0.0);
             by[column] = 1.0;
         }
-        for (parameter, factor) in [(Parameter::DisplacementOffset, 1.0), (Parameter::Drift, time)] {
+        place += rate * self.delay;
+        let terms = [(Parameter::DisplacementOffset, 1.0), (Parameter::Drift, time), (Parameter::Delay, rate)];
+        for (parameter, factor) in terms {
             place -= factor * self.layout.value(self.values, parameter);
             if let Some(column) = self.layout.column(parameter) {
                 by[column] -= factor;
@@ -132,9 +154,9 @@ impl Walk<'_> {
     }
 
     fn anchor(&self, turn: &Turn) -> Anchor {
-        let mut place_by = vec![0.0; self.layout.columns];
-        let place = self.place(turn.displacement, turn.time, turn.column, &mut place_by);
-        Anchor { place, force: 0.0, place_by, force_by: vec![0.0; self.layout.columns] }
+        let mut place_by = vec![0.0; self.layout.columns()];
+        let place = self.place(turn.displacement, [turn.time, 0.0], turn.column, &mut place_by);
+        Anchor { place, force: 0.0, place_by, force_by: vec![0.0; self.layout.columns()] }
     }
 
     /// A record from within a cycle: the contact has been at both extremes, the one behind it last.
@@ -159,7 +181,7 @@ impl Walk<'_> {
 
     fn remember(&mut self, mut anchor: Anchor, direction: f64) {
         self.memory.truncate(self.reached(anchor.place, direction));
-        let mut gradient = vec![0.0; self.layout.columns];
+        let mut gradient = vec![0.0; self.layout.columns()];
         anchor.force = self.force(self.memory.len(), (anchor.place, &anchor.place_by), direction, &mut gradient).force;
         anchor.force_by = gradient;
         self.memory.push(anchor);
@@ -198,7 +220,7 @@ impl Walk<'_> {
         for (column, sum) in gradient.iter_mut().enumerate() {
             *sum = from.force_by[column] + slope * (place_by[column] - from.place_by[column]);
         }
-        for (column, &parameter) in self.layout.parameters.iter().enumerate() {
+        for (column, parameter) in self.layout.sought() {
             gradient[column] += sign
                 * match parameter {
                     Parameter::Friction => by_friction / self.values[column],

@@ -7,17 +7,17 @@ use super::fit::Fitted;
 use super::identifiable::identifiable;
 use super::intervals::{Covariance, interval};
 use super::least_squares::Data;
-use super::quantised::{Rounding, shifts};
-use super::{Curve, Error, Estimate, Parameter, Residual, Runs, Task};
-
-/// Standard deviations by which too few runs are no accident.
-const TOO_FEW_RUNS: f64 = 4.0;
+use super::omitted::Tests;
+use super::quantised::{Roundings, Waves};
+use super::randomness::Randomness;
+use super::{Curve, Error, Estimate, Parameter, Residual, Task};
 
 /// How surely the values of a fit are known.
 pub(super) struct Uncertainty {
     pub(super) estimates: Vec<Estimate>,
     pub(super) correlations: Vec<Vec<Option<f64>>>,
     pub(super) identifiable: Vec<String>,
+    pub(super) tests: Tests,
 }
 
 impl Uncertainty {
@@ -25,12 +25,13 @@ impl Uncertainty {
         task: &Task,
         data: &Data,
         fitted: &Fitted,
-        roundings: &[Option<Rounding>],
+        roundings: &[Roundings],
         proceed: &dyn Fn() -> bool,
     ) -> Result<Uncertainty, Error> {
         let covariance = Covariance::new(data, fitted)?;
         let mut estimates = estimates(task, data, fitted, &covariance, proceed)?;
-        let shifts = shifts(data, fitted, &covariance, roundings);
+        let waves = Waves::new(data, fitted, roundings);
+        let shifts = waves.shifts(data, fitted, &covariance);
         for estimate in &mut estimates {
             let Some(column) = data.layout.column(estimate.parameter) else { continue };
             let ([most, variance], [low, high]) = (shifts[column], estimate.interval);
@@ -42,7 +43,8 @@ impl Uncertainty {
         let correlation = |a: &Estimate, b: &Estimate| covariance.correlation(column(a)?, column(b)?);
         let correlations = estimates.iter().map(|a| estimates.iter().map(|b| correlation(a, b)).collect()).collect();
         let identifiable = identifiable(data, fitted, &covariance, &estimates);
-        Ok(Uncertainty { estimates, correlations, identifiable })
+        let tests = Tests::new(data, fitted, &covariance, &waves);
+        Ok(Uncertainty { estimates, correlations, identifiable, tests })
     }
 }
 
@@ -95,14 +97,13 @@ pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<LeftOver, Error>
     let rows = data.rows(&fitted.values, &ones);
     let (mut curves, mut row) = (Vec::new(), 0);
     let (mut squares, mut largest, mut used, mut relative) = (0.0, 0.0_f64, 0, 0.0);
-    let (mut runs, mut expected, mut variance) = (0, 0.0, 0.0);
+    let mut randomness = Randomness::default();
     for record in &data.records {
-        let mut curve = Curve::default();
-        let (mut signs, mut changes, mut last) = ([0_u32; 2], 0, None);
+        let (mut curve, mut standardised) = (Curve::default(), Vec::new());
         for sample in &record.samples {
             let residual = rows.residual[row];
             let kept = fitted.factors[row] > 0.0;
-            curve.displacement.push(sample.displacement);
+            curve.displacement.push(sample.measured);
             curve.measured.push(sample.force);
             curve.fitted.push(sample.force + residual);
             curve.used.push(kept);
@@ -112,26 +113,18 @@ pub(super) fn left_over(data: &Data, fitted: &Fitted) -> Result<LeftOver, Error>
                 relative += (residual * fitted.factors[row]).powi(2) / record.weight;
                 largest = largest.max(residual.abs());
                 used += 1;
-                let sign = usize::from(residual > 0.0);
-                signs[sign] += 1;
-                changes += usize::from(last != Some(sign));
-                last = Some(sign);
+                standardised.push(residual * fitted.factors[row]);
             }
             row += 1;
         }
-        let [a, b] = signs.map(f64::from);
-        let all = a + b;
-        runs += changes;
-        expected += 2.0 * a * b / all + 1.0;
-        variance += 2.0 * a * b * (2.0 * a * b - all) / (all * all * (all - 1.0).max(1.0));
+        randomness.add(&standardised);
         curves.push(curve);
     }
-    let random = expected - runs as f64 <= TOO_FEW_RUNS * variance.max(0.0).sqrt();
     let residual = Residual {
         rms: (squares / f64::from(used).max(1.0)).sqrt(),
         largest,
         outliers: 1.0 - f64::from(used) / ones.len() as f64,
-        runs: Runs { count: runs, expected, random },
+        runs: randomness.runs(),
     };
     let sticking = rows.slopes.iter().filter(|&&slope| slope > 0.0).count() as f64 / ones.len() as f64;
     Ok(LeftOver { curves, residual, sticking, excess: (relative / f64::from(used).max(1.0)).sqrt() })

@@ -24,11 +24,15 @@ pub enum Parameter {
     ForceOffset,
     /// The velocity at which the measured displacement runs away from that of the machine, m/s.
     Drift,
+    /// The time by which the measured force follows the measured displacement, s.
+    Delay,
+    /// The rate at which the gain of the force drifts, over the gain at time zero, 1/s.
+    GainDrift,
 }
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Parameter; 8] = [
+    pub const ALL: [Parameter; 10] = [
         Parameter::Friction,
         Parameter::GStar,
         Parameter::EStar,
@@ -37,6 +41,8 @@ impl Parameter {
         Parameter::DisplacementOffset,
         Parameter::ForceOffset,
         Parameter::Drift,
+        Parameter::Delay,
+        Parameter::GainDrift,
     ];
 
     /// Its name in requests and replies.
@@ -51,7 +57,15 @@ impl Parameter {
             Parameter::DisplacementOffset => "displacement_offset",
             Parameter::ForceOffset => "force_offset",
             Parameter::Drift => "drift",
+            Parameter::Delay => "delay",
+            Parameter::GainDrift => "gain_drift",
         }
+    }
+
+    /// Whether only times determine it.
+    #[must_use]
+    pub fn needs_time(self) -> bool {
+        matches!(self, Parameter::Drift | Parameter::Delay | Parameter::GainDrift)
     }
 
     /// Whether it is above zero, so that the search is for its logarithm.
@@ -93,6 +107,15 @@ pub(super) fn combination(profile: &Profile) -> &'static str {
     }
 }
 
+/// Whether a profile has a parameter that loops can determine.
+pub(super) fn is_of(parameter: Parameter, profile: &Profile) -> bool {
+    match parameter {
+        Parameter::EStar | Parameter::Radius => matches!(profile, Profile::Sphere(_)),
+        Parameter::GStar => !matches!(profile, Profile::Ellipsoid(_) | Profile::Line(_)),
+        _ => true,
+    }
+}
+
 /// Checks that free parameters belong to the contact, and that no two of them have the same effect.
 ///
 /// # Errors
@@ -102,15 +125,8 @@ pub(super) fn check(
     with_prior: impl Fn(Parameter) -> bool,
     profile: &Profile,
 ) -> Result<(), Error> {
-    for &parameter in free {
-        let fits = match parameter {
-            Parameter::EStar | Parameter::Radius => matches!(profile, Profile::Sphere(_)),
-            Parameter::GStar => !matches!(profile, Profile::Ellipsoid(_) | Profile::Line(_)),
-            _ => true,
-        };
-        if !fits {
-            return Err(Error::NotOfProfile { parameter });
-        }
+    if let Some(&parameter) = free.iter().find(|&&parameter| !is_of(parameter, profile)) {
+        return Err(Error::NotOfProfile { parameter });
     }
     let mut unknown = free.iter().filter(|&&one| one.power_of_stiffness() != 0 && !with_prior(one));
     match (unknown.next(), unknown.next()) {

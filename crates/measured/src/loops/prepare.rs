@@ -2,26 +2,41 @@
 
 use super::least_squares::{Data, Prior, scales};
 use super::model::Layout;
-use super::record::{Branches, Turn, forms, times};
+use super::record::{Branches, Clock, Turn, forms, times};
 use super::reversals::reversals;
 use super::{Error, FEW_TURNS, FEWEST_POINTS, MOST_REFINED_TURNS, Parameter, Record, Start, Task, parameter};
 use crate::robust::median;
 
-/// The data of a task; `with_compliance` seeks the compliance of the machine too, and `drift` is what is known of the
-/// drift, m/s.
+/// What an earlier fit has found of the parameters that move displacements in time: a drift hides where the machine
+/// turns, and a delay moves the turns of the force.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Preliminary {
+    /// m/s; that of the turns, if there was no earlier fit.
+    pub(super) drift: Option<f64>,
+    /// s; that which is known, if there was no earlier fit.
+    pub(super) delay: Option<f64>,
+}
+
+/// The data of a task; `with_compliance` seeks the compliance of the machine too.
 ///
 /// # Errors
 /// [`Error`], which names what the records lack.
-pub(super) fn prepare(task: &Task, with_compliance: bool, drift: Option<f64>) -> Result<Data, Error> {
+pub(super) fn prepare(task: &Task, with_compliance: bool, preliminary: Preliminary) -> Result<Data, Error> {
     let Task { contact, records, free, known, noise } = task;
     if contact.friction() <= 0.0 || contact.normal_force() <= 0.0 {
         return Err(Error::NoContact { record: None });
     }
     let uncertain = |parameter| known.iter().find(|known| known.parameter == parameter && known.standard_error > 0.0);
     parameter::check(free, |parameter| uncertain(parameter).is_some(), contact.profile())?;
-    if let Some(record) = records.iter().position(|record| free.contains(&Parameter::Drift) && record.time.is_none()) {
-        return Err(Error::NoTime { record });
+    let timed = |parameter: &Parameter| parameter.needs_time() && *parameter != Parameter::Drift;
+    let held_times = known.iter().map(|known| known.parameter).filter(timed);
+    let needs_time = free.iter().copied().filter(|parameter| parameter.needs_time()).chain(held_times).next();
+    if let Some(parameter) = needs_time
+        && let Some(record) = records.iter().position(|record| record.time.is_none())
+    {
+        return Err(Error::NoTime { parameter, record });
     }
+    let timeless = records.iter().all(|record| record.time.is_none());
     // A steady loop is one about its own middle, wherever that is.
     let virgin = records.iter().any(|record| record.start == Some(Start::Virgin));
     let sought = |parameter: Parameter| {
@@ -36,21 +51,28 @@ pub(super) fn prepare(task: &Task, with_compliance: bool, drift: Option<f64>) ->
     for known in known {
         held[known.parameter as usize] = known.value;
     }
+    if timeless {
+        // The numbers of the points are times then, and a velocity in m/s says nothing.
+        held[Parameter::Drift as usize] = 0.0;
+    }
     let stiffness_sought = parameters
         .iter()
         .any(|parameter| parameter.power_of_stiffness() != 0 || *parameter == Parameter::MachineCompliance);
     let mut prepared = Vec::with_capacity(records.len());
     for (index, record) in records.iter().enumerate() {
-        let drift = match drift {
+        let drift = match preliminary.drift {
             Some(drift) => drift,
             None if parameters.contains(&Parameter::Drift) => drift_of_turns(record, noise.displacement),
             None => held[Parameter::Drift as usize],
         };
-        let branches = Branches::new(record, index, contact, noise.displacement, drift)?;
+        let clock =
+            Clock { drift, delay: preliminary.delay.unwrap_or(held[Parameter::Delay as usize]), counts: timeless };
+        let branches = Branches::new(record, index, contact, noise.displacement, clock)?;
         branches.check(index, stiffness_sought && !with_compliance)?;
         prepared.push(branches);
     }
-    let mut layout = Layout { columns: parameters.len(), parameters, held, defined };
+    let parameters = parameters.into_iter().map(Some).collect();
+    let mut layout = Layout { parameters, held, defined };
     let mut priors: Vec<Prior> = known
         .iter()
         .filter(|known| known.standard_error > 0.0)
@@ -76,7 +98,7 @@ pub(super) fn prepare(task: &Task, with_compliance: bool, drift: Option<f64>) ->
 fn refine_turns(record: &mut Branches, layout: &mut Layout, priors: &mut Vec<Prior>, shared: bool) {
     let width = record.extremes[0].displacement - record.extremes[1].displacement;
     let [share, share_error] = record.corner_share;
-    let first = layout.columns;
+    let first = layout.columns();
     let of_turns = first + usize::from(record.turns.iter().any(|turn| turn.corner != 0.0));
     if of_turns > first {
         priors.push(Prior::new(first, width * share, width * share_error));
@@ -94,7 +116,7 @@ fn refine_turns(record: &mut Branches, layout: &mut Layout, priors: &mut Vec<Pri
             Some(drift) => terms.push((drift, turn.time)),
             None => value -= layout.held[Parameter::Drift as usize] * turn.time,
         }
-        Prior { terms, value, standard_error: turn.error }
+        Prior { terms, value, standard_error: turn.error, time: turn.time }
     };
     for extreme in &mut record.extremes {
         let own = record.turns.iter().position(|turn| turn == extreme).map(column);
@@ -108,7 +130,7 @@ fn refine_turns(record: &mut Branches, layout: &mut Layout, priors: &mut Vec<Pri
         priors.push(known(turn, column(place)));
         turn.column = Some(column(place));
     }
-    layout.columns = next;
+    layout.parameters.resize(next, None);
 }
 
 /// The drift that turns of the same side show, m/s; zero if there are too few.

@@ -1,9 +1,12 @@
 //! A record of the bench as branches between turning points, thinned, and the faults that show before any fit.
 
+use super::gaps::{gaps, loosen_inner_turns};
+use super::loading_curve::{Bench, LoadingCurve};
 use super::reversals::{Reversals, extent, reversals};
 use super::sampled_curve::SampledCurve;
 use super::turns::{Form, corner_share, form};
-use super::{Error, FEWEST_POINTS, MOST_POINTS, Record, Start};
+use super::velocity::Velocity;
+use super::{Error, FEWEST_POINTS, MOST_POINTS, Record, Start, quantised};
 use crate::robust::{median, quantile};
 use stickslip_mechanics::{Contact, range};
 
@@ -16,16 +19,21 @@ const MOST_STIFFNESS_RATIO: f64 = 200.0;
 /// A record may end short of a turn by this share of its last step.
 const END_SHARE: f64 = 0.5;
 /// Turns agree within this many standard deviations.
-const AGREE: f64 = 3.0;
+pub(super) const AGREE: f64 = 3.0;
 /// The stiffness after a reversal is that of this share of the branch.
 const FIRST_SHARE: f64 = 0.1;
 
 /// A point of the record, on its branch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sample {
+    /// As measured, m.
+    pub(super) measured: f64,
+    /// That to which the force belongs: the delay earlier, m.
     pub(super) displacement: f64,
     pub(super) force: f64,
     pub(super) time: f64,
+    /// The velocity of the displacement, m/s.
+    pub(super) rate: f64,
     /// How far the displacement most likely was from where it was measured, m, and what that makes in the force, N.
     pub(super) shift: f64,
     pub(super) by_shift: f64,
@@ -58,8 +66,18 @@ pub(super) struct Branches {
     pub(super) noise: f64,
     /// The drift of the displacement, m/s, as far as it was known before.
     pub(super) drift: f64,
+    /// The delay of the force, s, that the displacements of the samples allow for.
+    pub(super) delay: f64,
     /// Where between vertex and corner the turns are, with its standard deviation.
     pub(super) corner_share: [f64; 2],
+    /// The time between two points, s; one where points are counted.
+    pub(super) step: f64,
+    /// Whether it has times.
+    pub(super) timed: bool,
+    /// The step of a displacement that was rounded, m.
+    pub(super) displacement_step: Option<f64>,
+    /// Whether a turn lies where points are missing.
+    pub(super) turn_in_gap: bool,
     /// The highest and the lowest places, ends included.
     pub(super) extremes: [Turn; 2],
     /// The virgin contact at the load of the record.
@@ -74,14 +92,25 @@ pub(super) struct Branches {
     pub(super) stiffness: f64,
 }
 
+/// What the times of a record mean.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock {
+    /// The drift of the displacement, m/s, as far as it is known.
+    pub(super) drift: f64,
+    /// The delay of the force, s, as far as it is known.
+    pub(super) delay: f64,
+    /// Whether the points of a record without times are counted: no record has times.
+    pub(super) counts: bool,
+}
+
 impl Branches {
-    /// Finds the branches of a record of this drift, m/s, and thins it.
+    /// Finds the branches of a record, and thins it.
     pub(super) fn new(
         record: &Record,
         index: usize,
         contact: &Contact,
         noise: Option<f64>,
-        drift: f64,
+        clock: Clock,
     ) -> Result<Branches, Error> {
         let Record { displacement, force, normal_force, start, weight, .. } = record;
         let contact = contact.pressed(normal_force.unwrap_or(contact.normal_force()))?;
@@ -100,29 +129,40 @@ impl Branches {
         if high <= low {
             return Err(Error::ConstantForce { record: index });
         }
-        let (times, drift) = (times(record), if record.time.is_some() { drift } else { 0.0 });
+        let timed = record.time.is_some();
+        let (times, drift, delay) = match clock {
+            Clock { drift, delay, .. } if timed => (times(record), drift, delay),
+            _ => (times(record), 0.0, 0.0),
+        };
         // A drift hides where the machine turns.
         let level: Vec<f64> = displacement.iter().zip(&times).map(|(u, time)| u - drift * time).collect();
-        let Reversals { at, rising, noise } = reversals(&level, noise);
+        let displacement_step = quantised::displacement_step(displacement);
+        let rounding = displacement_step.map_or(0.0, |step| quantised::variance(step).sqrt());
+        let Reversals { at, rising, noise } = reversals(&level, noise.map(|noise| noise.hypot(rounding)));
+        let noise = noise.max(rounding);
         if at.is_empty() {
             return Err(Error::SingleBranch { record: index });
         }
-        let forms = forms(&times, &level, &at, noise);
+        let mut forms = forms(&times, &level, &at, noise);
+        let gaps = gaps(&times, &level, (&at, noise), timed);
+        gaps.iter().zip(&mut forms).for_each(|(gap, form)| gap.time.into_iter().for_each(|time| form.time = time));
         let corner_share = corner_share(&forms, noise);
-        let time = |time: f64| if record.time.is_some() { time } else { 0.0 };
-        let turns: Vec<Turn> = forms
+        let time = |time: f64| if timed || clock.counts { time } else { 0.0 };
+        let mut turns: Vec<Turn> = forms
             .iter()
-            .map(|form| {
+            .zip(&gaps)
+            .map(|(form, gap)| {
                 let corner = form.corner - form.vertex;
                 Turn {
                     displacement: form.vertex + corner_share[0] * corner + drift * form.time,
                     time: time(form.time),
                     corner,
-                    error: form.error,
+                    error: form.error.hypot(gap.hidden),
                     column: None,
                 }
             })
             .collect();
+        let turn_in_gap = gaps.iter().any(|gap| gap.is_long) | loosen_inner_turns(&mut turns, rising, drift);
         let last = displacement.len() - 1;
         let ends = [(0, 1), (last, last - 1)].map(|(end, beside)| Turn {
             displacement: displacement[end],
@@ -136,7 +176,9 @@ impl Branches {
         else {
             return Err(Error::SingleBranch { record: index });
         };
-        let at = last_samples(&times, &forms);
+        let at = last_samples(&times, &forms, delay);
+        let ends = last_samples(&times, &forms, 0.0);
+        let velocity = Velocity::new(&times, displacement, &ends, [span(extent(displacement)), noise]);
         let every = displacement.len().div_ceil(MOST_POINTS);
         let mut samples = Vec::with_capacity(displacement.len() / every + at.len() + 1);
         let mut branch = 0;
@@ -144,9 +186,11 @@ impl Branches {
             let turning = at.get(branch) == Some(&place);
             if place % every == 0 || turning {
                 samples.push(Sample {
-                    displacement,
+                    measured: displacement,
+                    displacement: velocity.earlier(place, delay),
                     force,
                     time: time(times[place]),
+                    rate: if timed || clock.counts { velocity.at(place) } else { 0.0 },
                     shift: 0.0,
                     by_shift: 0.0,
                     branch,
@@ -162,6 +206,11 @@ impl Branches {
             weight: *weight,
             noise,
             drift,
+            delay,
+            step: median(&mut times.windows(2).map(|pair| pair[1] - pair[0]).collect::<Vec<f64>>()),
+            timed,
+            displacement_step,
+            turn_in_gap,
             corner_share,
             extremes: [highest, lowest],
             curve: SampledCurve::new(&contact),
@@ -180,6 +229,17 @@ impl Branches {
             let way = of[2].displacement - of[0].displacement - self.drift * (of[2].time - of[0].time);
             way.abs() <= AGREE * of[2].error.hypot(of[0].error)
         })
+    }
+
+    /// Whether the contact of this bench slips as a whole.
+    pub(super) fn slides(&self, bench: Bench) -> bool {
+        let half = 0.5 * (self.extremes[0].displacement - self.extremes[1].displacement);
+        half >= LoadingCurve::new(&self.contact, &self.curve, bench).gross_slip()
+    }
+
+    /// How long it takes, s.
+    pub(super) fn duration(&self) -> f64 {
+        self.samples.last().map_or(0.0, |last| last.time - self.samples[0].time)
     }
 
     /// 1 where a branch rises, -1 where it falls.
@@ -260,15 +320,34 @@ pub(super) fn forms(times: &[f64], level: &[f64], at: &[usize], noise: f64) -> V
         .collect()
 }
 
-/// The last sample of each branch.
-fn last_samples(times: &[f64], forms: &[Form]) -> Vec<usize> {
+/// The last sample of each branch, by forces that come so much later.
+fn last_samples(times: &[f64], forms: &[Form], delay: f64) -> Vec<usize> {
     let mut least = 0;
     let last = |form: &Form| {
-        let at = times.partition_point(|time| *time <= form.time).saturating_sub(1).max(least);
+        let at = times.partition_point(|time| *time - delay <= form.time).saturating_sub(1).max(least);
         least = at + 1;
-        at
+        at.min(times.len() - 1)
     };
     forms.iter().map(last).collect()
+}
+
+/// The same record without points that repeat the point before: an instrument that was read faster than it measures.
+pub(super) fn without_doubles(record: &Record) -> Record {
+    let Record { displacement, force, time, .. } = record;
+    let same = |a: &[f64]| a[0].to_bits() == a[1].to_bits();
+    let doubled = displacement.windows(2).zip(force.windows(2)).map(|(u, f)| same(u) && same(f));
+    let kept: Vec<bool> = std::iter::once(true).chain(doubled.map(|doubled| !doubled)).collect();
+    let column =
+        |values: &[f64]| values.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect();
+    if kept.iter().all(|kept| *kept) || displacement.len() != force.len() {
+        return record.clone();
+    }
+    Record {
+        displacement: column(displacement),
+        force: column(force),
+        time: time.as_ref().map(|time| column(time)),
+        ..record.clone()
+    }
 }
 
 /// The outermost place in a direction, where a machine that repeats its cycle has turned before: of turns that agree
@@ -287,7 +366,23 @@ fn extreme(turns: &[Turn], ends: &[Turn; 2], rising: bool, drift: f64, sign: f64
         Some(farthest) if agree(farthest) => middle,
         farthest => farthest,
     };
-    ends.iter().filter(beyond).max_by(by_place).or(of_turns).copied()
+    let found = ends.iter().filter(beyond).max_by(by_place).or(of_turns).copied();
+    let mut in_time = turns.iter().skip(usize::from(rising == (sign < 0.0))).step_by(2);
+    match (found, in_time.next(), in_time.next()) {
+        // Amplitudes that fall from the first on have been larger before: by as much again, or not.
+        (Some(found), Some(first), Some(second)) if found == *first => {
+            let fall = far(first) - far(second);
+            let falls = fall > AGREE * first.error.hypot(second.error);
+            let farther = Turn {
+                displacement: found.displacement + sign * 0.5 * fall,
+                corner: 0.0,
+                error: found.error.hypot(fall),
+                ..found
+            };
+            Some(if falls { farther } else { found })
+        }
+        (found, ..) => found,
+    }
 }
 
 /// A positive friction that the mechanics accepts.

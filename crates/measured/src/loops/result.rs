@@ -41,6 +41,32 @@ pub struct Residual {
     pub runs: Runs,
 }
 
+/// A parameter that was not free, and what the data say of it: the result of one further step of the search with it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Omitted {
+    /// Which.
+    pub parameter: Parameter,
+    /// What it would be, in its SI unit; `None` where the data do not distinguish it, or its unit needs times.
+    pub value: Option<f64>,
+    /// By how many of its standard errors it would differ from what it was taken for; `None` where the data do not
+    /// distinguish it from what is free.
+    pub z: Option<f64>,
+    /// By how much each parameter that is sought would change, in its SI unit.
+    pub shifts: Vec<(Parameter, f64)>,
+}
+
+/// What a small error of the bench would do to the estimates.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sensitivity {
+    /// Which parameter is not zero, or not what it was taken for.
+    pub parameter: Parameter,
+    /// By how much, in its SI unit: a delay of one sample, 1 % of the force, of the way, of the compliance of the
+    /// contact, or of the gain over the record; `None` where its unit needs times.
+    pub change: Option<f64>,
+    /// By how much each parameter that is sought changes, in its SI unit.
+    pub shifts: Vec<(Parameter, f64)>,
+}
+
 /// A record beside its fit, thinned as the fit has used it; one entry a point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curve {
@@ -73,6 +99,14 @@ pub enum Note {
     TurnsAsSampled,
     /// The forces come in steps that are not small beside the noise: standard errors and intervals are the wider.
     Quantised,
+    /// As the forces, the displacements.
+    DisplacementQuantised,
+    /// Points are missing about a turn: where it was is found from what came after.
+    TurnInGap,
+    /// A parameter that was not free is not what it was taken for: see `omitted`.
+    OmittedParameter,
+    /// The residual is larger than the noise that was told: see `excess`.
+    NoiseExceeded,
     /// The residual is no noise: friction is not Coulomb's, or the contact is another one.
     NotCoulomb,
     /// The search ended before its minimum: values and intervals are those of where it stopped.

@@ -31,7 +31,7 @@ pub(super) fn best(data: &Data, noise: f64, proceed: &dyn Fn() -> bool) -> Resul
     }
     guesses.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     let mut best: Option<(f64, Vec<f64>)> = None;
-    let free: Vec<usize> = (0..data.layout.columns).collect();
+    let free: Vec<usize> = (0..data.layout.columns()).collect();
     for (_, mut values) in guesses.into_iter().take(FOLLOWED) {
         match data.minimise(&mut values, &factors, &free, &Control::rough(proceed)) {
             Ok(cost) if best.as_ref().is_none_or(|(least, _)| cost < *least) => best = Some((cost, values)),
@@ -51,7 +51,7 @@ fn guesses_of(data: &Data) -> Vec<Vec<f64>> {
     let (measured, defined) = record.map_or((1.0, 1.0), |record| (record.stiffness, stiffness(&record.contact)));
     let measured = if measured > 0.0 { measured } else { defined };
     let sought = |parameter| layout.column(parameter).is_some();
-    let modulus_sought = layout.parameters.iter().any(|parameter| parameter.power_of_stiffness() != 0);
+    let modulus_sought = layout.sought().any(|(_, parameter)| parameter.power_of_stiffness() != 0);
     let shares = match (modulus_sought, sought(Parameter::MachineCompliance)) {
         (true, true) => CONTACT_SHARES.to_vec(),
         (true, false) => vec![1.0, (measured / defined).min(1.0)],
@@ -61,14 +61,15 @@ fn guesses_of(data: &Data) -> Vec<Vec<f64>> {
     let mut guesses = Vec::new();
     for &share in &shares {
         for &reached in reached {
-            let mut values = vec![0.0; layout.columns];
-            for (column, &parameter) in layout.parameters.iter().enumerate() {
+            let mut values = vec![0.0; layout.columns()];
+            for (column, parameter) in layout.sought() {
                 values[column] = match parameter {
                     Parameter::Friction => clamp_friction(friction / reached),
                     Parameter::MachineCompliance => (1.0 - share).max(0.01) / measured,
                     Parameter::DisplacementOffset => offset(records, layout),
                     Parameter::ForceOffset => force_offset(records),
-                    Parameter::Drift => 0.0,
+                    Parameter::Drift | Parameter::GainDrift => 0.0,
+                    Parameter::Delay => records[0].delay,
                     of_stiffness => {
                         let ratio = measured / share / defined;
                         layout.defined[parameter as usize]

@@ -3,7 +3,7 @@
 use stickslip_mechanics::profile::{Cone, ExactSphere, Profile, RoundedPunch};
 use stickslip_mechanics::{Contact, Elasticity, Preload, Setup, Sphere};
 
-use super::prepare::prepare;
+use super::prepare::{Preliminary, prepare};
 use super::{Known, Noise, Parameter, Record, Start, Task};
 
 /// A record of noise about a falling sine, which leaves turning points of all sizes.
@@ -35,7 +35,8 @@ fn gradients_agree_with_differences() {
         let way = 1.3 * contact.gross_slip_displacement();
         // Given two standard errors, three parameters of the stiffness can be sought at once.
         let mut free = vec![Parameter::Friction, Parameter::GStar, Parameter::MachineCompliance];
-        free.extend([Parameter::DisplacementOffset, Parameter::ForceOffset, Parameter::Drift]);
+        free.extend([Parameter::DisplacementOffset, Parameter::ForceOffset]);
+        free.extend([Parameter::Drift, Parameter::Delay, Parameter::GainDrift]);
         let mut known = Vec::new();
         if ball {
             free.extend([Parameter::EStar, Parameter::Radius]);
@@ -44,10 +45,12 @@ fn gradients_agree_with_differences() {
                 .to_vec();
         }
         let records = vec![record(way, Start::Virgin), record(0.8 * way, Start::Steady)];
-        let data = prepare(&Task { contact, records, free, known, noise: Noise::default() }, false, None).unwrap();
+        let data =
+            prepare(&Task { contact, records, free, known, noise: Noise::default() }, false, Preliminary::default())
+                .unwrap();
         let factors = vec![1.0; data.samples()];
-        let mut values: Vec<f64> = (0..data.layout.columns).map(|column| 1e-3 * data.scales[column]).collect();
-        for (column, &parameter) in data.layout.parameters.iter().enumerate() {
+        let mut values: Vec<f64> = (0..data.layout.columns()).map(|column| 1e-3 * data.scales[column]).collect();
+        for (column, parameter) in data.layout.sought() {
             values[column] = match parameter {
                 Parameter::Friction => 0.42,
                 Parameter::MachineCompliance => 3e-8,
@@ -59,8 +62,8 @@ fn gradients_agree_with_differences() {
         }
         data.priors.iter().for_each(|prior| prior.apply(&mut values));
         let rows = data.rows(&values, &factors);
-        assert!(data.layout.columns > data.layout.parameters.len());
-        for column in 0..data.layout.columns {
+        assert!(data.layout.columns() > data.layout.sought().count());
+        for column in 0..data.layout.columns() {
             let size = if data.logarithmic(column) { values[column] } else { data.scales[column] };
             let step = 1e-5 * size;
             let at = |sign: f64| {

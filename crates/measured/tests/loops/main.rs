@@ -9,3 +9,4 @@ mod quantised;
 mod recovery;
 mod scenes;
 mod statistics;
+mod unmodelled;

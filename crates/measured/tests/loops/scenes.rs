@@ -43,7 +43,7 @@ impl Drive {
     }
 
     /// The displacement over the amplitude, and whether it rises, at a phase in cycles.
-    fn at(self, phase: f64) -> (f64, bool) {
+    pub fn at(self, phase: f64) -> (f64, bool) {
         let phase = phase.rem_euclid(1.0);
         // Half a cycle that rises from -1 to 1 is mirrored.
         let (half, rises) = (2.0 * (phase % 0.5), phase < 0.5);

@@ -2,6 +2,7 @@
 
 use stickslip_mechanics::range::MIN_POSITIVE_NORMAL_FORCE;
 
+use super::FitParameter;
 use crate::limits::FIT_POINTS;
 use crate::prelude::*;
 use crate::profile_fit::LengthUnit;
@@ -22,7 +23,7 @@ pub struct MeasuredLoop {
     pub displacement: Vec<f64> = Array(FIT_POINTS, NUMBER),
     /// Tangential forces, one for each displacement, in the unit of `units.force`.
     pub force: Vec<f64> = Array(FIT_POINTS, NUMBER),
-    /// Times, s, increasing, one for each point; only `drift` needs them.
+    /// Times, s, increasing, one for each point; only `drift`, `delay` and `gain_drift` need them.
     pub time: Option<Vec<f64>> = Array(FIT_POINTS, TIME),
     /// The load, N; if left out, that of the contact.
     pub normal_force: Option<f64> = LOAD,
@@ -87,8 +88,15 @@ impl ForceUnit {
 }
 
 impl MeasuredLoop {
-    /// Checks the loop and takes it into SI units, `units` being those of displacement and force in m and N.
-    pub(super) fn check(&mut self, units: [f64; 2], drifts: bool, at: JsonPath<'_>, faults: &mut Faults) {
+    /// Checks the loop and takes it into SI units, `units` being those of displacement and force in m and N, and `timed`
+    /// a parameter that needs times.
+    pub(super) fn check(
+        &mut self,
+        units: [f64; 2],
+        timed: Option<FitParameter>,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) {
         let points = self.displacement.len();
         for (name, length) in [("force", Some(self.force.len())), ("time", self.time.as_ref().map(Vec::len))] {
             if let Some(length) = length.filter(|length| *length != points) {
@@ -106,8 +114,12 @@ impl MeasuredLoop {
                     faults.add(at.member("time"), "the same at all points: give the time of each, or leave it out");
                 }
             }
-            None if drifts => faults.add(at.member("time"), "give the time of each point, or leave `drift` out"),
-            None => {}
+            None => {
+                if let Some(parameter) = timed {
+                    let detail = format_args!("give the time of each point, or leave `{}` out", parameter.name());
+                    faults.add(at.member("time"), detail);
+                }
+            }
         }
         self.time.iter_mut().for_each(|time| part(time));
         let [length, force] = units;

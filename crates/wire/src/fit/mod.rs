@@ -6,7 +6,9 @@ mod reply;
 
 pub use data::{FitUnits, ForceUnit, LoopStart, MeasuredLoop};
 pub use parameter::{FitParameter, KnownValue, KnownValues};
-pub use reply::{FitEstimate, FitReply, FitResidual, FittedLoop, NoiseLevels, SignRuns};
+pub use reply::{
+    FitEstimate, FitReply, FitResidual, FittedLoop, NoiseLevels, OmittedParameter, ParameterSensitivity, SignRuns,
+};
 
 use crate::limits::FIT_LOOPS;
 use crate::prelude::*;
@@ -25,8 +27,9 @@ pub struct FitRequest {
     pub loops: Vec<MeasuredLoop> = Items(FIT_LOOPS),
     /// The units of `displacement` and `force` of the loops; if left out, SI. Everything else is in SI units.
     pub units: Option<FitUnits>,
-    /// The quantities that the fit determines.
-    pub free: Vec<FitParameter> = Distinct,
+    /// The quantities that the fit determines. If left out, the loops decide: friction, stiffness and force offset, the
+    /// compliance of the machine if a loop reaches gross slip, and what the score tests show to differ from zero.
+    pub free: Option<Vec<FitParameter>> = Distinct,
     /// Values known from elsewhere. One with a standard error takes part in the fit, whether it is free or not.
     pub known: Option<KnownValues>,
     /// The noise of the measured numbers; if left out, it is estimated from the loops.
@@ -78,10 +81,14 @@ impl Document for FitRequest {
     fn checked(mut self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let root = JsonPath::Root;
         let setup = self.contact.check(root.member("contact"), profiles, faults);
-        let drifts = self.free.contains(&FitParameter::Drift);
+        // A drift that is known moves nothing in a record without times.
+        let known = self.known.iter().flat_map(KnownValues::iter).map(|(parameter, _)| parameter);
+        let known = known.filter(|parameter| *parameter != FitParameter::Drift);
+        let mut named = self.free.iter().flatten().copied().chain(known);
+        let timed = named.find(|parameter| parameter.needs_time());
         let (units, at) = (self.units.unwrap_or_default().in_si(), root.member("loops"));
         for (index, measured) in self.loops.iter_mut().enumerate() {
-            measured.check(units, drifts, at.index(index), faults);
+            measured.check(units, timed, at.index(index), faults);
         }
         if let Some(known) = &self.known {
             known.check(root.member("known"), faults);

@@ -6,6 +6,10 @@ use crate::prelude::*;
 const COMPLIANCE: Range = Range { quantity: Quantity::MachineStiffness, unit: "m/N", min: 0.0, max: 1e9 };
 /// A drift of the displacement.
 const DRIFT: Range = Range { quantity: Quantity::Displacement, unit: "m/s", min: -1e9, max: 1e9 };
+/// A delay of the force.
+const DELAY: Range = Range { quantity: Quantity::Number, unit: "s", min: -1e9, max: 1e9 };
+/// A drift of the gain.
+const GAIN_DRIFT: Range = Range { quantity: Quantity::Number, unit: "1/s", min: -1e9, max: 1e9 };
 /// A value in the unit of its quantity, whatever that is.
 const VALUE: Range = Range { quantity: Quantity::Number, unit: "", min: -1e20, max: 1e20 };
 /// Its standard error.
@@ -65,6 +69,9 @@ parameters! {
         "Measured displacement at which the contact is not displaced, m.";
     ForceOffset force_offset "force_offset" range::FORCE, "Measured force at zero force on the contact, N.";
     Drift drift "drift" DRIFT, "Drift rate of the zero of the displacement, m/s.";
+    Delay delay "delay" DELAY, "Time by which the measured force follows the measured displacement, s.";
+    GainDrift gain_drift "gain_drift" GAIN_DRIFT,
+        "Rate at which the gain of the force drifts, relative to the gain at time zero, 1/s.";
 }
 
 requests! {
@@ -75,6 +82,13 @@ pub struct KnownValue: Copy {
     /// Its standard error, in the same unit; zero, the default, holds the value fixed.
     pub standard_error: Option<f64> = STANDARD_ERROR,
 }
+}
+
+impl FitParameter {
+    /// Whether only the times of the points determine it.
+    pub(super) fn needs_time(self) -> bool {
+        matches!(self, FitParameter::Drift | FitParameter::Delay | FitParameter::GainDrift)
+    }
 }
 
 impl KnownValues {

@@ -14,6 +14,12 @@ pub struct FitReply {
     pub correlations: BTreeMap<FitParameter, BTreeMap<FitParameter, Option<f64>>>,
     /// What the loops determine: quantities by name, or combinations of them where a single one is not determined.
     pub identifiable: Vec<String>,
+    /// The quantities that were fitted: those of the request, or those that the loops decided on.
+    pub free: Vec<FitParameter>,
+    /// A score test of each quantity that was not free.
+    pub omitted: Vec<OmittedParameter>,
+    /// The change of the estimates by small errors of the bench that were not free.
+    pub sensitivity: Vec<ParameterSensitivity>,
     /// Measured less fitted forces.
     pub residual: FitResidual,
     /// The noise as given, otherwise as estimated.
@@ -40,6 +46,31 @@ pub struct FitEstimate: Copy {
     pub at_bound: bool,
 }
 
+/// A quantity that was not free, with the result of one further step of the search in which it is.
+pub struct OmittedParameter {
+    /// The quantity.
+    pub name: FitParameter,
+    /// Its value after the step, in the SI unit of the quantity; `null` where the loops do not distinguish it from the
+    /// free quantities, or where its unit needs times.
+    pub value: Option<f64>,
+    /// The distance of that value from the one assumed, in its standard errors, a pure number; beyond ±4 the assumption
+    /// is wrong. `null` where the loops do not distinguish it from the free quantities.
+    pub z: Option<f64>,
+    /// The change of each estimate in the step, in the SI unit of the estimate; empty where `z` is `null`.
+    pub shifts: BTreeMap<FitParameter, f64>,
+}
+
+/// The effect of a small error of the bench on the estimates.
+pub struct ParameterSensitivity {
+    /// The quantity that differs from what the fit assumes.
+    pub name: FitParameter,
+    /// By how much it differs, in the SI unit of the quantity; a delay of one sample; an offset of 1 % of the force or of the amplitude;
+    /// 1 % of the compliance of the contact; a drift of 1 % over the record. `null` where its unit needs times.
+    pub change: Option<f64>,
+    /// The resulting change of each estimate, in the SI unit of the estimate.
+    pub shifts: BTreeMap<FitParameter, f64>,
+}
+
 /// Measured less fitted forces, in a few numbers.
 pub struct FitResidual: Copy {
     /// Root mean square without outliers, N.
@@ -58,7 +89,7 @@ pub struct SignRuns: Copy {
     pub count: usize,
     /// Number of runs that noise has on average, a pure number.
     pub expected: f64,
-    /// Whether the two numbers agree, as for noise.
+    /// Whether the two numbers agree, as for noise, and neighbouring residuals are independent.
     pub random: bool,
 }
 

@@ -4,7 +4,7 @@ use stickslip_measured::loops::{self, Error, Known, LoopFit, Noise, Note, Parame
 use stickslip_mechanics as mechanics;
 use stickslip_wire::fit::{
     FitEstimate, FitParameter, FitReply, FitResidual, FitUnits, FittedLoop, LoopStart, MeasuredLoop, NoiseLevels,
-    SignRuns,
+    OmittedParameter, ParameterSensitivity, SignRuns,
 };
 use stickslip_wire::{Effective, FitRequest, Material, Profile};
 
@@ -22,7 +22,7 @@ pub fn fit_loops(request: FitRequest, setup: SharedSetup, stop: &dyn Stop) -> Re
     let task = loops::Task {
         contact: contact(setup, "/contact")?,
         records: loops.into_iter().map(record).collect(),
-        free: free.iter().map(|name| of(*name)).collect(),
+        free: free.iter().flatten().map(|name| of(*name)).collect(),
         known: known
             .iter()
             .map(|(name, known)| Known {
@@ -36,7 +36,10 @@ pub fn fit_loops(request: FitRequest, setup: SharedSetup, stop: &dyn Stop) -> Re
     let fit = loops::fit(&task, &|| stop.check().is_ok()).map_err(|error| match (error, stop.check()) {
         (Error::Interrupted, Err(interrupted)) => Failure::interrupted(interrupted, "/loops"),
         (Error::Refused(error), _) => refused_at("/contact", preload)(error),
-        (error, _) => Failure::at(place(&error, &free, units.unwrap_or_default(), has_friction), error),
+        (error, _) => {
+            let free = free.as_deref().unwrap_or(&[]);
+            Failure::at(place(&error, free, units.unwrap_or_default(), has_friction), error)
+        }
     })?;
     Ok(reply(fit, definition))
 }
@@ -74,7 +77,7 @@ fn place(error: &Error, free: &[FitParameter], units: FitUnits, has_friction: bo
         Error::SingleBranch { record } | Error::ConstantDisplacement { record } => of_record(record, "displacement"),
         Error::ForceUnit { record, .. } => of_unit(units.force.is_some(), record, "force"),
         Error::StiffnessUnit { record, .. } => of_unit(units.displacement.is_some(), record, "displacement"),
-        Error::NoTime { record } => of_record(record, "time"),
+        Error::NoTime { record, .. } => of_record(record, "time"),
         Error::Inseparable { parameter, .. } | Error::NotOfProfile { parameter } => {
             position(parameter).map_or_else(|| "/free".to_owned(), |index| format!("/free/{index}"))
         }
@@ -96,7 +99,28 @@ fn reply(fit: LoopFit, definition: ContactDefinition) -> FitReply {
     };
     let loops::Residual { rms, largest, outliers, runs: loops::Runs { count, expected, random } } = fit.residual;
     let [force, displacement] = fit.noise;
+    let shifts = |shifts: &[(Parameter, f64)]| {
+        // A shift that a computer cannot hold is none that a loop determines.
+        let finite = shifts.iter().filter(|(_, shift)| shift.is_finite());
+        finite.map(|(parameter, shift)| (name(*parameter), *shift)).collect()
+    };
+    let omitted = |one: &loops::Omitted| OmittedParameter {
+        name: name(one.parameter),
+        value: one.value.filter(|value| value.is_finite()),
+        z: one.z.filter(|z| z.is_finite()),
+        shifts: shifts(&one.shifts),
+    };
+    let sensitivity = |one: &loops::Sensitivity| ParameterSensitivity {
+        name: name(one.parameter),
+        change: one.change.filter(|change| change.is_finite()),
+        shifts: shifts(&one.shifts),
+    };
+    let warnings = fit.notes.iter().map(|note| warning(*note, &fit)).collect();
     FitReply {
+        free: fit.free.iter().copied().map(name).collect(),
+        omitted: fit.omitted.iter().map(omitted).collect(),
+        sensitivity: fit.sensitivity.iter().map(sensitivity).collect(),
+        warnings,
         estimates: names.iter().copied().zip(fit.estimates.iter().map(estimate)).collect(),
         correlations,
         contact: fitted(definition, &fit, &names),
@@ -113,7 +137,6 @@ fn reply(fit: LoopFit, definition: ContactDefinition) -> FitReply {
                 used: curve.used,
             })
             .collect(),
-        warnings: fit.notes.into_iter().map(warning).collect(),
     }
 }
 
@@ -139,16 +162,32 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
     }
 }
 
-fn warning(note: Note) -> Warning {
+fn warning(note: Note, fit: &LoopFit) -> Warning {
     let (code, message) = match note {
+        Note::OmittedParameter => return Warning::new("omitted_parameter", omitted_parameters(fit)),
+        Note::NoiseExceeded => {
+            let message = format!(
+                "the residual is {:.3} times the noise of the request: either that noise is too small, or the contact \
+                 or the bench is another one. The standard errors are too small",
+                fit.excess
+            );
+            return Warning::new("noise_exceeded", message);
+        }
+        Note::PartialSlipOnly => return Warning::new("partial_slip_only", partial_slip(fit)),
+        Note::DisplacementQuantised => (
+            "quantised",
+            "the displacements come in steps that are not small beside the noise of the force: their rounding does not \
+             average out at the turning points. Intervals are widened by the shift that it may cause",
+        ),
+        Note::TurnInGap => (
+            "turn_in_gap",
+            "points are missing about a turning point: its place follows from the forces after it alone. Send cycles \
+             without gaps",
+        ),
         Note::MachineComplianceUnknown => (
             "machine_compliance_unknown",
             "the compliance of the machine is taken as zero: a soft machine makes friction and stiffness wrong, and \
              the fit looks perfect all the same. Give it as `known`, or free it where the loop reaches gross slip",
-        ),
-        Note::PartialSlipOnly => (
-            "partial_slip_only",
-            "no loop reaches gross slip: friction and stiffness follow only from the curvature of the branches",
         ),
         Note::BeyondGrossSlip => (
             "beyond_gross_slip",
@@ -171,8 +210,9 @@ fn warning(note: Note) -> Warning {
         ),
         Note::NotCoulomb => (
             "not_coulomb",
-            "the residual is not noise: the contact has another friction law, shape or load, or the bench \
-             another error. The standard errors are too small",
+            "the residual is not noise: the contact has another friction law, shape or load, or a load that is not \
+             constant, points are missing about a turning point, or the bench has another error. The standard errors \
+             are too small",
         ),
         Note::NotConverged => (
             "not_converged",
@@ -181,6 +221,58 @@ fn warning(note: Note) -> Warning {
         ),
     };
     Warning::new(code, message)
+}
+
+/// The parameters whose score is significant, the most significant first, with what freeing each would change.
+fn omitted_parameters(fit: &LoopFit) -> String {
+    let mut found: Vec<&loops::Omitted> = fit.omitted.iter().filter(|one| one.is_significant()).collect();
+    let size = |one: &loops::Omitted| one.z.map_or(0.0, f64::abs);
+    found.sort_by(|a, b| size(b).total_cmp(&size(a)));
+    let described = |one: &&loops::Omitted| {
+        let shifts = relative(fit, &one.shifts, 0.0);
+        let changes = if shifts.is_empty() { String::new() } else { format!(": {shifts}") };
+        format!("`{}` (z = {:.1}{changes})", one.parameter.name(), one.z.unwrap_or(0.0))
+    };
+    let all: Vec<String> = found.iter().map(described).collect();
+    let needs_time = found.first().is_some_and(|one| one.parameter.needs_time());
+    let times = if needs_time { ", with the `time` of each point" } else { "" };
+    let first = found.first().map_or("", |one| one.parameter.name());
+    format!(
+        "parameters that were not free differ from what the fit assumes: {}. Free `{first}`{times}, or correct the \
+         record; free one at a time, as they may stand for each other",
+        all.join(", ")
+    )
+}
+
+/// What partial slip alone does not distinguish, in numbers.
+fn partial_slip(fit: &LoopFit) -> String {
+    let described = |one: &loops::Sensitivity| {
+        let error = match one.parameter {
+            Parameter::Delay => "a delay of the force by one sample",
+            Parameter::ForceOffset => "a force offset of 1 %",
+            Parameter::GainDrift => "a gain that drifts by 1 %",
+            _ => return None,
+        };
+        let shifts = relative(fit, &one.shifts, 5e-4);
+        (!shifts.is_empty()).then(|| format!("{error} would change {shifts}"))
+    };
+    let all: Vec<String> = fit.sensitivity.iter().filter_map(described).collect();
+    let effects = if all.is_empty() { String::new() } else { format!("; {}", all.join("; ")) };
+    format!(
+        "no loop reaches gross slip: friction and stiffness follow only from the curvature of the branches{effects}"
+    )
+}
+
+/// Shifts of positive estimates as shares of them in percent, those of at least this share.
+fn relative(fit: &LoopFit, shifts: &[(Parameter, f64)], least: f64) -> String {
+    let share = |(parameter, shift): &(Parameter, f64)| {
+        let estimate = fit.estimates.iter().find(|estimate| estimate.parameter == *parameter)?;
+        let is_positive = matches!(parameter, Parameter::Friction | Parameter::GStar | Parameter::MachineCompliance);
+        let share = shift / estimate.value;
+        (is_positive && share.is_finite() && share.abs() >= least)
+            .then(|| format!("{} by {:+.2} %", parameter.name(), 100.0 * share))
+    };
+    shifts.iter().filter_map(share).collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]
