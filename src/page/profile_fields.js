@@ -25,7 +25,7 @@ export function profileFields(form, at, changed, nested = false) {
   );
   const body = el("div", { class: "fields" });
   let read;
-  const fill = () => {
+  const fill = (given) => {
     body.replaceChildren();
     read = (choice.value in COLUMNS ? columns : choice.value === "sum" ? sum : numbers)(
       form,
@@ -33,21 +33,31 @@ export function profileFields(form, at, changed, nested = false) {
       changed,
       body,
       choice.value,
+      given,
+      nested ? undefined : take,
     );
     changed();
   };
-  choice.control.addEventListener("change", fill);
+  /** Takes a whole profile in place of the one that stands here. */
+  const take = (profile) => {
+    choice.control.value = profile.type;
+    fill(profile);
+  };
+  choice.control.addEventListener("change", () => fill());
   const element = el("div", {}, choice.element, body);
   fill();
   return { element, type: () => choice.value, value: () => ({ type: choice.value, ...read() }) };
 }
 
-function numbers(form, at, _changed, body, type) {
+function numbers(form, at, _changed, body, type, given) {
   const fields = PROFILES[type][1].map((about) => {
     const place = () => `${at()}/${about.name}`;
     const field = about.options
       ? new Choice(form, place, about.label, about.options, Object.keys(about.options)[0])
       : new NumberField(form, place, about);
+    const [list, index] = about.name.split("/");
+    const value = index === undefined ? given?.[list] : given?.[list]?.[index];
+    if (typeof value === "number") field.control.value = inPower(value, Number(field.choice?.value ?? 0), 6);
     return [about.name, field];
   });
   if (LINE_CONTACTS.includes(type)) body.append(specimenPicture(type));
@@ -64,7 +74,7 @@ function numbers(form, at, _changed, body, type) {
   };
 }
 
-function columns(form, at, changed, body, type) {
+function columns(form, at, changed, body, type, _given, take) {
   const [label, described, example] = COLUMNS[type];
   const units = described.map(([, , offered, usual]) =>
     el(
@@ -166,7 +176,7 @@ function columns(form, at, changed, body, type) {
   );
   if (isScan) {
     const distance = el("label", {}, "Distance of neighbours in a map, if its header does not say ", spacing);
-    body.append(el("p", { class: "row", onchange: choose }, distance), scanFit(source, scan, write));
+    body.append(el("p", { class: "row", onchange: choose }, distance), scanFit(source, scan, write, take));
   }
   form.settle(source.settled);
   source.read();

@@ -4,8 +4,9 @@ import { Chart } from "./chart.js";
 import { el, noticing } from "./dom.js";
 import { formatQuantity } from "./units.js";
 
-/** Controls below a table that `source` reads. `scan` gives what it found, and `write` takes the profile. */
-export function scanFit(source, scan, write) {
+/** Controls below a table that `source` reads. `scan` gives what it found, `write` takes the table of the profile, and
+ *  `take` another shape, where one may stand here. */
+export function scanFit(source, scan, write, take) {
   const chart = new Chart({
     name: "scan",
     title: "Scan and profile",
@@ -27,13 +28,21 @@ export function scanFit(source, scan, write) {
     });
     said.textContent = [summary(reply), ...reply.warnings.map((warning) => warning.message)].join(". ");
     write(reply.profile);
+    const offered = take && reply.suggested;
+    suggested.hidden = !offered;
+    if (offered) {
+      suggested.textContent = `Use the ${offered.profile.type} that the scan suggests`;
+      suggested.onclick = () => take(offered.profile);
+    }
   });
+  const suggested = el("button", { type: "button", id: "use-suggested", hidden: true });
   return el(
     "div",
     {},
     el("label", {}, "A scan: a line through the axis, points, or a map, as a file ", source.input),
     el("button", { type: "button", id: "fit-scan", onclick: fit }, "Fit a profile to the scan"),
     said,
+    suggested,
     chart.element,
   );
 }

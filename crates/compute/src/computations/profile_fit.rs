@@ -1,9 +1,13 @@
 //! `profile`: a scan becomes a profile.
 
 use stickslip_measured::scan::{self, DRAWN_POINTS, Error, Options, Orientation, Scan, ScanFit};
+use stickslip_plot::in_unit;
+use stickslip_wire::curve_profiles::{EllipsoidProfile, MotionAxis};
+use stickslip_wire::line_profiles::CylinderProfile;
 use stickslip_wire::profile::TabulatedProfile;
 use stickslip_wire::profile_fit::{
-    Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitTask, ScanOrientation, ScanResidual, Smoothing,
+    Axis2, Axisymmetry, ColumnPair, ContactEstimate, Estimate, ProfileFitTask, ScanOrientation, ScanResidual,
+    Smoothing, SuggestedProfile,
 };
 use stickslip_wire::{Profile, ProfileFitReply, ProfileFitRequest};
 
@@ -216,22 +220,45 @@ fn reply(fit: ScanFit, contact: Option<scan::ContactEstimate>, line: bool) -> Pr
             rms: fit.rms,
             correlation_length: fit.correlation_length,
             outliers: fit.outliers + fit.fill_values,
+            random: fit.diagnosis.random,
         },
         raw: columns(&fit.raw),
         left_out: columns(&fit.left_out),
         used: columns(&fit.table),
         g_margin: fit.g_margin,
+        axisymmetry: match fit.diagnosis.second_harmonic {
+            Some(_) => Axisymmetry::Tested,
+            None => Axisymmetry::Assumed,
+        },
+        suggested: fit.diagnosis.paraboloid.map(|body| SuggestedProfile {
+            profile: suggested(&body),
+            angle: body.angle,
+            radii: [estimate(body.short), body.long.map_or(unknown, estimate)],
+        }),
         contact: contact.map(|contact| ContactEstimate {
             indentation: estimate(contact.indentation),
             contact_radius: estimate(contact.contact_radius),
             normal_force: estimate(contact.normal_force),
             max_pressure: estimate(contact.max_pressure),
         }),
-        warnings: warnings(&fit, contact.as_ref()),
+        warnings: warnings(&fit, contact.as_ref(), line),
     }
 }
 
-fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warning> {
+/// The profile of a body by its principal radii, the larger along x.
+fn suggested(body: &scan::Paraboloid) -> Profile {
+    match body.long {
+        Some(long) => {
+            let radii = vec![long.value, body.short.value];
+            Profile::Ellipsoid(EllipsoidProfile { radii, direction: MotionAxis::X })
+        }
+        None => {
+            Profile::Cylinder(CylinderProfile { radius: body.short.value, length: body.extent, reference_length: None })
+        }
+    }
+}
+
+fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>, line: bool) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let mut warn = |code: &str, message: String| warnings.push(Warning::new(code, message));
     let reach = fit.table.radius[fit.table.radius.len() - 1];
@@ -256,6 +283,51 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>) -> Vec<Warni
              as well; scan across the peak, or give `centre`"
         );
         warn("one_sided_scan", message);
+    }
+    let diagnosis = &fit.diagnosis;
+    if diagnosis.second_harmonic == Some(true) {
+        let body = match &diagnosis.paraboloid {
+            Some(scan::Paraboloid { short, long: Some(long), angle, .. }) => format!(
+                "an ellipsoid with radii of curvature of {} and {}, the larger at {angle:.1} degrees from x: see \
+                 `suggested`",
+                in_unit(long.value, "m"),
+                in_unit(short.value, "m")
+            ),
+            Some(scan::Paraboloid { short, angle, .. }) => format!(
+                "a cylinder with a radius of {}, its axis at {angle:.1} degrees from x: see `suggested`",
+                in_unit(short.value, "m")
+            ),
+            None => "a saddle, or another surface without a profile here".to_owned(),
+        };
+        let message = format!(
+            "the body is not one of revolution, as the residual changes with twice the angle about the axis: it looks \
+             like {body}. The profile and its errors are those of no contact"
+        );
+        warn("not_axisymmetric", message);
+    }
+    if let Some(ratio) = diagnosis.structure {
+        let message = format!(
+            "the residual is {ratio:.1} times the noise between neighbours, or outliers lie side by side, or rows \
+             wander: there may be steps, dust, scratches or a drift. The standard errors leave this out: look at the \
+             residual, and remove what is not the surface"
+        );
+        warn("not_one_surface", message);
+    }
+    if let Some([x, y]) = fit.other_axis {
+        let place = if line { in_unit(x, "m") } else { format!("{}, {}", in_unit(x, "m"), in_unit(y, "m")) };
+        let message = format!(
+            "another axis, at {place}, fits the scan as well with another tilt and another profile: the standard errors \
+             hold both. Scan farther on the short side, or give `centre` or `level`"
+        );
+        warn("axis_ambiguous", message);
+    }
+    if let Some(step) = fit.height_step {
+        let message = format!(
+            "the heights come in steps of {}, which are not small beside the noise: their rounding does not average out, \
+             and the standard errors leave this out",
+            in_unit(step, "m")
+        );
+        warn("quantised", message);
     }
     if let Some(contact) = contact.filter(|contact| contact.contact_radius.value > NEAR_EDGE * reach) {
         let part = 100.0 * contact.contact_radius.value / reach;

@@ -20,8 +20,23 @@ const TILT_GAIN: f64 = 9.0;
 /// The least standard deviation of a height, in the range of all.
 const EXACT: f64 = 1e-9;
 
-/// Fits the scan.
-pub(super) fn fit(scan: &Scaled, sought: &Sought, keep_going: &dyn Fn() -> bool) -> Result<Fitted, Error> {
+/// An axis with less of the scan on its other side, in half the extent, is not taken for one without a tilt.
+const ONE_SIDED: f64 = 0.25;
+/// Axes farther from each other than this, in half the extent, are two.
+const OTHER_AXIS: f64 = 0.1;
+/// Heights of two curves that differ by this share are two shapes.
+const OTHER_SHAPE: f64 = 0.1;
+/// Squares that are larger by this factor may be those of a tip that the intervals round.
+const NEARLY: f64 = 25.0;
+/// Degrees of freedom that differ by less are as many.
+const AS_FREE: f64 = 0.5;
+
+/// Fits the scan; with the fit about another axis that the scan does not exclude, if there is one.
+pub(super) fn fit(
+    scan: &Scaled,
+    sought: &Sought,
+    keep_going: &dyn Fn() -> bool,
+) -> Result<(Fitted, Option<Fitted>), Error> {
     let starts = match sought.axis {
         Some(axis) => Starts { level: Some(axis), tilted: vec![axis] },
         None => start::axes(scan, keep_going).ok_or(Error::Interrupted)?,
@@ -29,7 +44,7 @@ pub(super) fn fit(scan: &Scaled, sought: &Sought, keep_going: &dyn Fn() -> bool)
     let from = |axis, tilt| Turns::new(scan, sought, tilt, keep_going).run(axis);
     let level = starts.level.ok_or(Error::Hollow).and_then(|axis| from(axis, false));
     if !sought.tilt || matches!(level, Err(Error::Interrupted)) {
-        return level;
+        return level.map(|level| (level, None));
     }
     let mut tilted: Vec<Fitted> = Vec::new();
     for axis in starts.tilted {
@@ -51,17 +66,52 @@ pub(super) fn fit(scan: &Scaled, sought: &Sought, keep_going: &dyn Fn() -> bool)
     let count = scan.points.len() as f64;
     let freedom = |fitted: &Fitted| fitted.solution.freedom * count.ln() / count;
     let score = |fitted: &Fitted| start::score(squares(fitted), fitted.axis) + freedom(fitted);
-    let Some(tilted) = tilted.into_iter().min_by(|a, b| score(a).total_cmp(&score(b))) else { return level };
-    // A tilt is believed only where the scan shows it. The noise that this is compared with is that of the better fit:
-    // what a tilt that was left in makes of the other's residual looks like correlated noise. Near the edge, or with a
-    // curve of more freedom, the axis without a tilt could be that of a flank.
-    let Ok(level) = level else { return Ok(tilted) };
-    let overlap = start::overlap(level.axis);
-    let simple = overlap >= 0.0 && level.solution.freedom <= tilted.solution.freedom;
-    if sought.axis.is_none() && overlap < TESTED && !simple {
-        return Ok(tilted);
+    let best = (0..tilted.len()).min_by(|a, b| score(&tilted[*a]).total_cmp(&score(&tilted[*b])));
+    let Some(best) = best else { return level.map(|level| (level, None)) };
+    let best = tilted.swap_remove(best);
+    // The noise that a gain in squares is compared with is that of the better fit: what a tilt that was left in makes
+    // of the other's residual looks like correlated noise.
+    let gain = |better: &Fitted| TILT_GAIN * if scan.plane { 2.0 } else { 1.0 } * of_noise(better) * better.inflation;
+    // A tilt is believed only where the scan shows it. Near the edge the axis without a tilt could be that of a flank.
+    let is_level = |level: &Fitted| {
+        let overlap = start::overlap(level.axis);
+        let simple = overlap >= 0.0 && level.solution.freedom <= best.solution.freedom;
+        let better = if score(&best) < score(level) { &best } else { level };
+        (sought.axis.is_some() || overlap >= ONE_SIDED || simple) && squares(level) <= squares(better) + gain(better)
+    };
+    let (chosen, is_level) = match level {
+        Ok(level) if is_level(&level) => {
+            tilted.push(best);
+            (level, true)
+        }
+        Ok(level) => {
+            tilted.push(level);
+            (best, false)
+        }
+        Err(_) => (best, false),
+    };
+    if sought.axis.is_some() {
+        return Ok((chosen, None));
     }
-    let best = if score(&tilted) < score(&level) { &tilted } else { &level };
-    let gain = TILT_GAIN * if scan.plane { 2.0 } else { 1.0 } * of_noise(best) * best.inflation;
-    Ok(if squares(&level) <= squares(best) + gain { level } else { tilted })
+    // Of a parabola any axis fits with a tilt, and the shape is the same; a flank fits with more freedom.
+    let fits = |other: &Fitted| {
+        let apart = (0..2).any(|index| (other.axis[index] - chosen.axis[index]).abs() > OTHER_AXIS);
+        let tested = start::overlap(other.axis) >= ONE_SIDED;
+        let as_free = other.solution.freedom <= chosen.solution.freedom + AS_FREE;
+        let as_well = as_free && squares(other) <= squares(&chosen) + gain(&chosen);
+        // Without a tilt a tip that is sharper than the intervals leaves more than noise, and is the likelier shape.
+        let is_untilted = other.tilt.iter().all(|slope| slope.abs() <= 0.0);
+        apart && tested && (as_well || is_untilted && squares(other) <= NEARLY * squares(&chosen))
+    };
+    let is_doubtful = !is_level || start::overlap(chosen.axis) < TESTED;
+    let other = tilted.into_iter().filter(|other| is_doubtful && fits(other) && is_other_shape(&chosen, other));
+    let other = other.min_by(|a, b| squares(a).total_cmp(&squares(b)));
+    Ok((chosen, other))
+}
+
+/// Whether two curves differ by more than a share of their heights, halfway to where the shorter ends.
+fn is_other_shape(one: &Fitted, other: &Fitted) -> bool {
+    let half = 0.5 * one.curve.end().min(other.curve.end());
+    let [a, b] = [one, other].map(|fitted| fitted.curve.height(half) - fitted.curve.offset);
+    (a - b).abs() > OTHER_SHAPE * a.abs().max(b.abs())
 }

@@ -8,6 +8,8 @@ const UNITS: [f64; 5] = [1.0, 1e-3, 1e-6, 1e-9, 1e-10];
 const ROUNDED: f64 = 1e-6;
 /// So often no surface has one height to the last digit: the symmetry of a grid repeats a height up to 16 times.
 const OFTEN: usize = 16;
+/// An instrument has no more fill values of its own than this.
+const MOST_FILLS: usize = 3;
 /// The share of all heights that are fill values, at most.
 const MOST: f64 = 1.0 / 3.0;
 /// The share of the heights on either side that the range of the surface leaves out.
@@ -23,14 +25,18 @@ pub(super) fn fill_values(points: &[[f64; 3]]) -> Vec<f64> {
         FILL_VALUES.iter().any(|value| UNITS.iter().any(|unit| near(value * unit)))
     };
     let often = |run: &[f64]| run.len() > OFTEN && run.len() as f64 <= MOST * heights.len() as f64;
-    let runs = heights.chunk_by(|a, b| a.to_bits() == b.to_bits());
-    let (candidates, rest): (Vec<&[f64]>, Vec<&[f64]>) = runs.partition(|run| known(run[0]) || often(run));
-    let rest: Vec<f64> = rest.concat();
+    let runs: Vec<&[f64]> = heights.chunk_by(|a, b| a.to_bits() == b.to_bits()).collect();
+    let is_candidate = |run: &&&[f64]| known(run[0]) || often(run);
+    let candidates: Vec<&[f64]> = runs.iter().filter(is_candidate).copied().collect();
+    // Of a surface that comes in steps every height occurs often: then what is not known belongs to the surface.
+    let in_steps = candidates.len() > MOST_FILLS;
+    let is_fill = |run: &&&[f64]| known(run[0]) || (!in_steps && often(run));
+    let rest: Vec<f64> = runs.iter().filter(|run| !is_fill(run)).copied().collect::<Vec<&[f64]>>().concat();
     let Some(last) = rest.len().checked_sub(1) else { return Vec::new() };
     let quantile = |share: f64| rest[(share * last as f64) as usize];
     let (low, high) = (quantile(TAIL), quantile(1.0 - TAIL));
     let far = |value: &f64| high > low && (*value < low - (high - low) || *value > high + (high - low));
-    candidates.into_iter().map(|run| run[0]).filter(far).collect()
+    candidates.iter().filter(is_fill).map(|run| run[0]).filter(far).collect()
 }
 
 #[cfg(test)]
@@ -53,6 +59,9 @@ mod tests {
         // A height that occurs twice, one of the surface, a clipped one at its end.
         assert!(with(&[-3000.0; 2], 1e-9).is_empty());
         assert!(with(&[50.0; 20], 1e-9).is_empty() && with(&[198.0; 20], 1e-9).is_empty());
+        // A surface in steps, one of which is its flat.
+        let in_steps: Vec<f64> = (0..400).map(|index| -300.0 * f64::from(index / 20)).collect();
+        assert!(with(&in_steps, 1e-9).is_empty());
         // A surface that reaches to -9999 itself.
         assert!(with(&(0..100).map(|index| -100.0 * f64::from(index) - 99.0).collect::<Vec<_>>(), 1e-9).is_empty());
     }

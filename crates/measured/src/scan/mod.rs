@@ -14,6 +14,7 @@
 mod axis;
 mod contact;
 mod curve;
+mod diagnosis;
 mod error;
 mod fit;
 mod local_penalty;
@@ -26,6 +27,7 @@ mod smoothing;
 mod start;
 
 pub use contact::ContactEstimate;
+pub use diagnosis::{Diagnosis, Paraboloid};
 pub use error::Error;
 pub use smoothing::Smoothing;
 
@@ -175,6 +177,12 @@ pub struct ScanFit {
     pub g_margin: f64,
     /// Whether g would have fallen in the fit, had it not been kept from it.
     pub constrained: bool,
+    /// Another axis that the scan does not exclude, m, about which the profile is another one: the errors hold both.
+    pub other_axis: Option<[f64; 2]>,
+    /// The step of heights that a converter has rounded, m, if it is not small beside the residual.
+    pub height_step: Option<f64>,
+    /// What the residual says of the noise and of the body.
+    pub diagnosis: Diagnosis,
     profile: Profile,
     curve: Curve,
     /// Covariance of the curvatures, 1/m^2.
@@ -199,8 +207,10 @@ impl ScanFit {
             }
         }
         let sought = Sought { axis, tilt: options.level, smoothing: options.smoothing };
-        let fitted = axis::fit(&scaled, &sought, keep_going)?;
-        result::finished(scan, &fitted, &scaled, &units)
+        let (fitted, other) = axis::fit(&scaled, &sought, keep_going)?;
+        // A number of intervals that was asked for is kept, or refused.
+        let smooths = !matches!(options.smoothing, Smoothing::Knots(_));
+        result::finished(scan, (&fitted, other.as_ref()), (&scaled, &units), smooths)
     }
 
     /// The profile.

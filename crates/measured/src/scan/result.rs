@@ -3,20 +3,33 @@
 use nalgebra::DMatrix;
 use stickslip_mechanics::profile::{Profile, Tabulated};
 
-use super::curve::Curve;
+use super::curve::{Curve, interval};
+use super::diagnosis::Diagnosis;
 use super::fit::{Fitted, Scaled};
 use super::{
     Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, contact, noise, programme, start,
 };
 use crate::linear::dot;
+use crate::steps::step as rounding_step;
 
 /// The least g'(x)/x over its mean, as much as the table needs to rise.
 const FLOORS: [f64; 10] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3];
+/// Steps of the heights below this share of their range, or of less than the residual over this, do not matter.
+const LEAST_STEP: f64 = 2e-3;
+const MOST_RESIDUAL: f64 = 0.7;
 /// The share of the parabola of the mean curvature in the curve, where no floor makes the table rise.
-const SHARES: [f64; 5] = [0.01, 0.03, 0.1, 0.3, 0.6];
+/// The last is the parabola itself, which rises, with errors as large as the difference.
+const SHARES: [f64; 7] = [0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 1.0];
+/// How many of the shares a curve of a number of intervals that was asked for may have.
+const SHARES_OF_KNOTS: usize = 5;
 
 /// The fit in m, with its table.
-pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Units) -> Result<ScanFit, Error> {
+pub(super) fn finished(
+    scan: &Scan,
+    (fitted, other): (&Fitted, Option<&Fitted>),
+    (scaled, units): (&Scaled, &Units),
+    smooths: bool,
+) -> Result<ScanFit, Error> {
     let Fitted { equations, solution, parabola, .. } = fitted;
     let bend = units.height / (units.length * units.length);
     let breaks: Vec<f64> = fitted.curve.breaks.iter().map(|radius| radius * units.length).collect();
@@ -37,8 +50,9 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
         evened[..intervals].iter_mut().for_each(|curvature| *curvature += share * (mean - *parabola - *curvature));
         evened
     };
-    let candidates =
-        std::iter::once(unknowns.clone()).chain(FLOORS.into_iter().map(rising)).chain(SHARES.into_iter().map(evened));
+    let shares = if smooths { SHARES.len() } else { SHARES_OF_KNOTS };
+    let evened = SHARES.into_iter().take(shares).map(evened);
+    let candidates = std::iter::once(unknowns.clone()).chain(FLOORS.into_iter().map(rising)).chain(evened);
     let (mut made, mut lifted) = (None, unknowns.clone());
     for candidate in candidates {
         lifted = candidate;
@@ -52,7 +66,16 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
     let variance = fitted.variance * fitted.inflation * bend * bend;
     // What the curvatures would change by with other intervals, another penalty, and without the lift.
     let lift = lifted.iter().zip(&unknowns).map(|(lifted, plain)| lifted - plain).collect();
-    let systematic = [equations.change_of_halving(solution), fitted.without_scale.clone(), lift];
+    // About another axis that the scan does not exclude they are others.
+    let about_other = |other: &Fitted| {
+        let of = |place: usize| {
+            let middle = 0.5 * (fitted.curve.breaks[place] + fitted.curve.breaks[place + 1]);
+            other.curve.curvatures[interval(&other.curve.breaks, middle)] - fitted.curve.curvatures[place]
+        };
+        (0..intervals).map(of).collect::<Vec<f64>>()
+    };
+    let by_axis = other.map_or_else(|| vec![0.0; intervals], about_other);
+    let systematic = [equations.change_of_halving(solution), fitted.without_scale.clone(), lift, by_axis];
     let covariance = DMatrix::from_fn(intervals, intervals, |row, column| {
         let off: f64 = systematic.iter().map(|off: &Vec<f64>| off[row] * off[column]).sum();
         variance * solution.inverse[(row, column)] + bend * bend * off
@@ -68,14 +91,16 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
     let residuals: Vec<f64> =
         fitted.residuals.iter().zip(&fitted.kept).filter(|(_, kept)| **kept).map(|(e, _)| *e).collect();
     let sign = if units.orientation == Orientation::PeakDown { 1.0 } else { -1.0 };
+    let place = |axis: [f64; 2]| [0, 1].map(|index| units.middle[index] + axis[index] * units.length);
+    let rms = (dot(&residuals, &residuals) / residuals.len() as f64).sqrt() * units.height;
     Ok(ScanFit {
         table,
         standard_errors,
         radius_of_curvature,
-        centre: [0, 1].map(|axis| units.middle[axis] + fitted.axis[axis] * units.length),
+        centre: place(fitted.axis),
         tilt: fitted.tilt.map(|tilt| sign * tilt * units.height / units.length),
         orientation: units.orientation,
-        rms: (dot(&residuals, &residuals) / residuals.len() as f64).sqrt() * units.height,
+        rms,
         correlation_length: noise::correlation_lag(&residuals) * step(scan),
         used: fitted.kept.len(),
         fill_values: scan.fill_values,
@@ -85,6 +110,9 @@ pub(super) fn finished(scan: &Scan, fitted: &Fitted, scaled: &Scaled, units: &Un
         left_out,
         g_margin: g_margin(&curve),
         constrained,
+        other_axis: other.map(|other| place(other.axis)),
+        height_step: height_step(scan, rms),
+        diagnosis: Diagnosis::new(fitted, scaled, units),
         profile,
         curve,
         covariance,
@@ -105,6 +133,13 @@ fn table(curve: Curve) -> Result<Option<(Column, Profile, Curve)>, Error> {
         Ok(_) | Err(Refusal::NotConvexEnough { .. } | Refusal::Table { .. }) => Ok(None),
         Err(error) => Err(error.into()),
     }
+}
+
+/// The step of the heights, if it is not small beside the residual, nor beside the shape.
+fn height_step(scan: &Scan, rms: f64) -> Option<f64> {
+    let heights: Vec<f64> = scan.points.iter().map(|point| point[2]).collect();
+    let (low, high) = heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &z| (a.min(z), b.max(z)));
+    rounding_step(&heights).filter(|step| *step > LEAST_STEP * (high - low) && rms < MOST_RESIDUAL * step)
 }
 
 /// The least g'(x)/x over the mean.

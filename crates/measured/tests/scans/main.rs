@@ -5,6 +5,7 @@ mod faults;
 mod given;
 mod known_shapes;
 mod synthetic;
+mod unmodelled;
 
 use stickslip_mechanics::profile::Profile;
 use stickslip_mechanics::{Contact, ContactSummary, Elasticity, Preload, Setup, elasticity::Body};

@@ -4,7 +4,7 @@ mod data;
 mod reply;
 
 pub use data::{LineScan, MapScan, PointScan, ScanData};
-pub use reply::{Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitReply, ScanResidual};
+pub use reply::{Axis2, ColumnPair, ContactEstimate, Estimate, ProfileFitReply, ScanResidual, SuggestedProfile};
 
 use stickslip_mechanics::{Elasticity, Preload as Load};
 
@@ -100,6 +100,16 @@ pub enum ScanOrientation: Default {
     PeakUp = "peak_up",
     /// The body is lowest on its axis.
     PeakDown = "peak_down",
+}
+}
+
+words! {
+/// What a scan says of the symmetry of its body.
+pub enum Axisymmetry {
+    /// A map was tested for a second harmonic about its axis.
+    Tested = "tested",
+    /// A line knows one section alone.
+    Assumed = "assumed",
 }
 }
 

@@ -1,6 +1,6 @@
 //! The reply of `POST /profiles/fit`.
 
-use super::ScanOrientation;
+use super::{Axisymmetry, ScanOrientation};
 use crate::prelude::*;
 
 replies! {
@@ -27,6 +27,11 @@ pub struct ProfileFitReply omits Option {
     /// The least g′(x)/x over its mean, a pure number: 1 for a ball, 0 where g is about to fall or, at a flat end,
     /// constant.
     pub g_margin: f64,
+    /// Whether the scan was tested for a body that is not of revolution: `tested` of a map; `assumed` of a line, which
+    /// knows one section alone.
+    pub axisymmetry: Axisymmetry,
+    /// A body that is not of revolution, where the residual shows one: its profile is for `/simulate` and `/contacts`.
+    pub suggested: Option<SuggestedProfile>,
     /// The contact under `load`.
     pub contact: Option<ContactEstimate>,
     /// Warnings about the scan.
@@ -57,6 +62,18 @@ pub struct ScanResidual: Copy {
     pub correlation_length: f64,
     /// Number of points that were left out, including fill values of the instrument.
     pub outliers: usize,
+    /// Whether neighbouring residuals are independent, as of white noise; `null` if no two points are neighbours.
+    pub random: Option<bool>,
+}
+
+/// A body that is not of revolution, by its principal curvatures.
+pub struct SuggestedProfile {
+    /// An `ellipsoid`, or a `cylinder` whose length is the extent of the map along its axis.
+    pub profile: Profile,
+    /// The direction of the larger radius, or of the axis of the cylinder, degrees from the x axis of the scan.
+    pub angle: f64,
+    /// The principal radii of curvature, m, the smaller first; the larger is `null` for a cylinder.
+    pub radii: [Estimate; 2],
 }
 
 /// Heights over radii.
