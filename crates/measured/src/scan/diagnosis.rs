@@ -33,6 +33,10 @@ const SIGNIFICANT: f64 = 5.0;
 const LEAST_HARMONIC: f64 = 0.01;
 /// Correlations of neighbours beyond so many standard errors are no accident.
 const CORRELATED: f64 = 4.0;
+/// Radii below this share of the other one are not those of a body of revolution, and a paraboloid fits better that
+/// leaves less than this share of what the profile leaves.
+const ROUND: f64 = 0.98;
+const BETTER: f64 = 0.5;
 /// Curvatures below this share of the other one, or so many standard errors, are those of a cylinder.
 const STRAIGHT: f64 = 0.02;
 const STRAIGHT_ERRORS: f64 = 3.0;
@@ -69,8 +73,17 @@ impl Diagnosis {
     pub(super) fn new(fitted: &Fitted, scaled: &Scaled, units: &Units) -> Diagnosis {
         let neighbours = Neighbours::new(fitted, scaled);
         let mean = mean_curvature(fitted);
-        let second_harmonic = scaled.plane.then(|| has_second_harmonic(fitted, scaled, mean));
-        let paraboloid = second_harmonic.filter(|found| *found).and_then(|_| paraboloid(scaled, units));
+        let fitted_to_all = scaled.plane.then(|| paraboloid(scaled, units)).flatten();
+        // Far from a body of revolution the axis of the profile may be anywhere: a paraboloid that fits better shows it.
+        let mut sizes: Vec<f64> =
+            fitted.residuals.iter().zip(&scaled.of_surface).filter(|(_, of)| **of).map(|(e, _)| e.abs()).collect();
+        let of_profile = robust_deviation(&mut sizes);
+        let is_better = fitted_to_all.as_ref().is_some_and(|(body, deviation)| {
+            let is_long = body.long.is_none_or(|long| body.short.value < ROUND * long.value);
+            is_long && *deviation < BETTER * of_profile && of_profile > LEAST_RESIDUAL
+        });
+        let second_harmonic = scaled.plane.then(|| is_better || has_second_harmonic(fitted, scaled, mean));
+        let paraboloid = fitted_to_all.filter(|_| second_harmonic == Some(true)).map(|(body, _)| body);
         let structured =
             neighbours.is_structured() || wander(fitted, scaled) > MOST_WANDER || has_clusters(fitted, scaled);
         Diagnosis {
@@ -206,12 +219,12 @@ fn has_second_harmonic(fitted: &Fitted, scaled: &Scaled, mean_curvature: f64) ->
     is_surely && harmonic.norm() > LEAST_HARMONIC * mean_curvature
 }
 
-/// The paraboloid through the heights.
-fn paraboloid(scaled: &Scaled, units: &Units) -> Option<Paraboloid> {
+/// The paraboloid through the heights, and the standard deviation of what it leaves, in the range of the heights.
+fn paraboloid(scaled: &Scaled, units: &Units) -> Option<(Paraboloid, f64)> {
     let mut chosen: Vec<[f64; 3]> =
         scaled.points.iter().zip(&scaled.of_surface).filter(|(_, of)| **of).map(|(point, _)| *point).collect();
     let row = |&[x, y, _]: &[f64; 3]| [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y];
-    let (mut found, mut covariance) = (DVector::zeros(6), DMatrix::zeros(6, 6));
+    let (mut found, mut covariance, mut deviation) = (DVector::zeros(6), DMatrix::zeros(6, 6), 0.0);
     for _ in 0..ROUNDS {
         let matrix = DMatrix::from_fn(chosen.len(), 6, |place, column| row(&chosen[place])[column]);
         let heights = DVector::from_iterator(chosen.len(), chosen.iter().map(|point| point[2]));
@@ -228,7 +241,8 @@ fn paraboloid(scaled: &Scaled, units: &Units) -> Option<Paraboloid> {
         let inflation = if steps.is_empty() { 1.0 } else { (variance / of_neighbours).max(1.0) };
         covariance = inverse * (variance * inflation * inflation);
         let mut sizes: Vec<f64> = residuals.iter().map(|value| value.abs()).collect();
-        let most = OUTLIER * robust_deviation(&mut sizes);
+        deviation = robust_deviation(&mut sizes);
+        let most = OUTLIER * deviation;
         let before = chosen.len();
         let mut place = 0;
         chosen.retain(|_| {
@@ -262,10 +276,11 @@ fn paraboloid(scaled: &Scaled, units: &Units) -> Option<Paraboloid> {
     let direction = tensor.eigenvectors.column(order[1]);
     let along = chosen.iter().map(|[x, y, _]| direction[0] * x + direction[1] * y);
     let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-    Some(Paraboloid {
+    let body = Paraboloid {
         short: radius(short, short_error),
         long: (long > straight).then(|| radius(long, long_error)),
         angle: direction[1].atan2(direction[0]).to_degrees().rem_euclid(180.0),
         extent: (high - low) * units.length,
-    })
+    };
+    Some((body, deviation))
 }
