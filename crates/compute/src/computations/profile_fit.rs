@@ -305,10 +305,16 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>, line: bool) 
         );
         warn("not_axisymmetric", message);
     }
-    if let Some(ratio) = diagnosis.structure {
+    if diagnosis.structure.is_some() || diagnosis.edge.is_some() {
+        let found = match (diagnosis.edge, diagnosis.structure) {
+            (Some(edge), _) => format!("neighbouring heights differ by a step of {edge:.0} times their noise"),
+            (_, ratio) => format!(
+                "the residual is {:.1} times the noise between neighbours, or outliers lie side by side, or rows wander",
+                ratio.unwrap_or(1.0)
+            ),
+        };
         let message = format!(
-            "the residual is {ratio:.1} times the noise between neighbours, or outliers lie side by side, or rows \
-             wander: there may be steps, dust, scratches or a drift. The standard errors leave this out: look at the \
+            "{found}: there may be steps, dust, scratches or a drift. The standard errors leave this out: look at the \
              residual, and remove what is not the surface"
         );
         warn("not_one_surface", message);

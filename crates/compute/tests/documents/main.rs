@@ -18,6 +18,7 @@ mod preparation;
 mod profile_fit;
 mod profiles;
 mod protocols;
+mod reported;
 mod shear_strength;
 mod simulate;
 mod sliders;

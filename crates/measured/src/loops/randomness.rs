@@ -61,7 +61,7 @@ mod tests {
         let mut generator = fastrand::Rng::with_seed(1);
         let mut noise = || (0..6).map(|_| generator.f64() - 0.5).sum::<f64>() * 2f64.sqrt();
         for _ in 0..200 {
-            let residuals: Vec<f64> = (0..300).map(|_| noise()).collect();
+            let residuals: Vec<f64> = (0..600).map(|_| noise()).collect();
             assert!(random(&residuals));
             assert!(!random(&residuals.iter().map(|value| value + 4.0).collect::<Vec<_>>()));
             let wave = |(index, value): (usize, &f64)| value + (0.1 * index as f64).sin();

@@ -28,6 +28,8 @@ const OTHER_AXIS: f64 = 0.1;
 const OTHER_SHAPE: f64 = 0.1;
 /// Squares that are larger by this factor may be those of a tip that the intervals round.
 const NEARLY: f64 = 25.0;
+/// Axes along a line from which further fits start, in half the extent.
+const FURTHER: [f64; 5] = [-0.6, -0.3, 0.0, 0.3, 0.6];
 /// Degrees of freedom that differ by less are as many.
 const AS_FREE: f64 = 0.5;
 
@@ -104,14 +106,26 @@ pub(super) fn fit(
         apart && tested && (as_well || is_untilted && squares(other) <= NEARLY * squares(&chosen))
     };
     let is_doubtful = !is_level || start::overlap(chosen.axis) < TESTED;
-    let other = tilted.into_iter().filter(|other| is_doubtful && fits(other) && is_other_shape(&chosen, other));
-    let other = other.min_by(|a, b| squares(a).total_cmp(&squares(b)));
+    if !is_doubtful {
+        return Ok((chosen, None));
+    }
+    // Along a line nothing but both flanks tests an axis, and the coarse curves may have missed one that fits.
+    for place in if scan.plane { &[][..] } else { &FURTHER } {
+        match from([*place, 0.0], true) {
+            Err(Error::Interrupted) => return Err(Error::Interrupted),
+            Ok(fitted) => tilted.push(fitted),
+            Err(_) => {}
+        }
+    }
+    let other = tilted.into_iter().filter(|other| fits(other) && difference(&chosen, other) > OTHER_SHAPE);
+    // Errors that hold the one that is most different hold the others as a rule.
+    let other = other.max_by(|a, b| difference(&chosen, a).total_cmp(&difference(&chosen, b)));
     Ok((chosen, other))
 }
 
-/// Whether two curves differ by more than a share of their heights, halfway to where the shorter ends.
-fn is_other_shape(one: &Fitted, other: &Fitted) -> bool {
+/// By which share of their heights two curves differ, halfway to where the shorter ends.
+fn difference(one: &Fitted, other: &Fitted) -> f64 {
     let half = 0.5 * one.curve.end().min(other.curve.end());
     let [a, b] = [one, other].map(|fitted| fitted.curve.height(half) - fitted.curve.offset);
-    (a - b).abs() > OTHER_SHAPE * a.abs().max(b.abs())
+    (a - b).abs() / a.abs().max(b.abs()).max(f64::MIN_POSITIVE)
 }

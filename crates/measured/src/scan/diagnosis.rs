@@ -10,7 +10,7 @@ use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 use super::fit::{Fitted, Scaled};
 use super::noise::correlation_lag;
-use super::{Estimate, Units};
+use super::{Estimate, Units, edges};
 use crate::robust::{OUTLIER, robust_deviation};
 
 /// A residual of so many times the noise of neighbours is not noise: noise that is correlated over nine points has
@@ -63,6 +63,9 @@ pub struct Diagnosis {
     pub random: Option<bool>,
     /// The residual over the noise of neighbours, where steps, grains or rows that wander lie beside one surface.
     pub structure: Option<f64>,
+    /// The largest step between neighbouring heights, in standard deviations of their noise, if it is the edge of a grain
+    /// or a jump of the instrument.
+    pub edge: Option<f64>,
     /// Whether it has a second harmonic about the axis; `None` of a line, which does not show it.
     pub second_harmonic: Option<bool>,
     /// The body by its second harmonic.
@@ -86,10 +89,12 @@ impl Diagnosis {
         let paraboloid = fitted_to_all.filter(|_| second_harmonic == Some(true)).map(|(body, _)| body);
         let structured =
             neighbours.is_structured() || wander(fitted, scaled) > MOST_WANDER || has_clusters(fitted, scaled);
+        let edge = edges::largest(fitted, scaled);
         Diagnosis {
             random: neighbours.random(),
             // A second harmonic is structure too, with a name of its own.
             structure: (structured && second_harmonic != Some(true)).then(|| neighbours.ratio()),
+            edge,
             second_harmonic,
             paraboloid,
         }

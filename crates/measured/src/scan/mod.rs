@@ -15,6 +15,7 @@ mod axis;
 mod contact;
 mod curve;
 mod diagnosis;
+mod edges;
 mod error;
 mod fit;
 mod local_penalty;
