@@ -175,9 +175,10 @@ pub struct Protocol {
 #[schema(example = json!({"code": "dundurs_beta", "message": "the bodies are unlike"}))]
 pub struct Warning: Eq {
     /// A name for programs: `dundurs_beta`, `slip_direction`, `large_contact`, `units`, `far_beyond_slip`,
-    /// `beyond_model`, `noisy_table`, `many_outliers`, `fill_values`, `one_sided_scan`, `short_scan`,
-    /// `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`, `first_branch_unknown`, `not_coulomb`,
-    /// `quantised`, `not_converged`, `turns_as_sampled`, `tolerance_not_met`, `stress_error`, `interaction_neglected`,
+    /// `beyond_model`, `noisy_table`, `many_outliers`, `fill_values`, `one_sided_scan`, `axis_ambiguous`, `short_scan`,
+    /// `not_axisymmetric`, `not_one_surface`, `machine_compliance_unknown`, `partial_slip_only`, `beyond_gross_slip`,
+    /// `first_branch_unknown`, `not_coulomb`, `omitted_parameter`, `noise_exceeded`, `quantised`, `not_converged`,
+    /// `turns_as_sampled`, `turn_in_gap`, `tolerance_not_met`, `stress_error`, `interaction_neglected`,
     /// `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`, `bulk_work_neglected`, `no_worn_profile`,
     /// `unbounded_stress`, `no_positive_value`, `life_scatter`, `grid_outside_contact`, `grid_rim`,
     /// `grid_misses_largest`, `worn_profile_error`, `points_failed`.
