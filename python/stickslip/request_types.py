@@ -13,6 +13,8 @@ from .documents import Quantities, Quantity
 
 Auto: TypeAlias = Literal["auto"]
 """The string that leaves a choice to the service."""
+Axisymmetry: TypeAlias = Literal["tested", "assumed"]
+"""What a scan says of the symmetry of its body."""
 BodyName: TypeAlias = Literal["first", "second"]
 """One of the two bodies in contact."""
 CriticalMethod: TypeAlias = Literal["point", "line"]
@@ -27,7 +29,7 @@ FirstStroke: TypeAlias = Literal["given", "gross_slip", "partial", "stay"]
 """The beginning of a path."""
 FirstTurn: TypeAlias = Literal["up", "down"]
 """Where cycles begin and end."""
-FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "machine_compliance", "displacement_offset", "force_offset", "drift"]
+FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "machine_compliance", "displacement_offset", "force_offset", "drift", "delay", "gain_drift"]
 """A quantity of the contact or of the bench that a fit can determine."""
 ForceUnit: TypeAlias = Literal["N", "mN", "uN", "kN"]
 """A unit of force."""
@@ -339,6 +341,8 @@ class KnownValue(_KnownValueNeeded, total=False):
 class KnownValues(TypedDict, total=False):
     """Values known beforehand, by name."""
 
+    delay: KnownValue | Mapping[str, Any]
+    """Time by which the measured force follows the measured displacement, s."""
     displacement_offset: KnownValue | Mapping[str, Any]
     """Measured displacement at which the contact is not displaced, m."""
     drift: KnownValue | Mapping[str, Any]
@@ -351,6 +355,8 @@ class KnownValues(TypedDict, total=False):
     """Coulomb's coefficient of friction μ, a pure number."""
     g_star: KnownValue | Mapping[str, Any]
     """Reduced shear modulus G*, Pa."""
+    gain_drift: KnownValue | Mapping[str, Any]
+    """Rate at which the gain of the force drifts, relative to the gain at time zero, 1/s."""
     machine_compliance: KnownValue | Mapping[str, Any]
     """Compliance of the machine in series with the contact, m/N."""
     radius: KnownValue | Mapping[str, Any]
@@ -402,7 +408,7 @@ class MeasuredLoop(_MeasuredLoopNeeded, total=False):
     start: LoopStart
     """How the record begins; if left out, it is taken as `steady`, with a warning."""
     time: Quantities
-    """Times, s, increasing, one for each point; only `drift` needs them."""
+    """Times, s, increasing, one for each point; only `drift`, `delay` and `gain_drift` need them."""
     weight: Quantity
     """Weight of the loop relative to the others, a pure number. Default: 1.0."""
 

@@ -300,14 +300,23 @@ class FitReply(Result):
     estimates: Named[Record]
     """Estimates of the free quantities, and of those known with a standard error, by name."""
 
+    free: list[Any]
+    """The quantities that were fitted: those of the request, or those that the loops decided on."""
+
     identifiable: list[Any]
     """What the loops determine: quantities by name, or combinations of them where a single one is not determined."""
 
     noise: Record
     """The noise as given, otherwise as estimated."""
 
+    omitted: Rows[Record]
+    """A score test of each quantity that was not free."""
+
     residual: Record
     """Measured less fitted forces."""
+
+    sensitivity: Rows[Record]
+    """The change of the estimates by small errors of the bench that were not free."""
 
     warnings: Rows[Record]
     """Warnings about the fit."""
@@ -686,6 +695,11 @@ class PlanarState(Result):
 class ProfileFitReply(Result):
     """A profile that was fitted to a scan, with the residual of the scan."""
 
+    axisymmetry: types.Axisymmetry
+    """Whether the scan was tested for a body that is not of revolution: `tested` of a map; `assumed` of a line, which
+    knows one section alone.
+    """
+
     centre: Record
     """The axis, m."""
 
@@ -723,6 +737,10 @@ class ProfileFitReply(Result):
 
     contact: Record | None
     """The contact under `load`."""
+
+    suggested: Record | None
+    """A body that is not of revolution, where the residual shows one: its profile is for `/simulate` and `/contacts`.
+    """
 
 
 class ProtocolReply(Result):

@@ -141,9 +141,12 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "correlations": ("", "1"),
         "curve": ("[FittedLoop]", None),
         "estimates": ("{FitEstimate}", None),
+        "free": ("", None),
         "identifiable": ("", None),
         "noise": ("NoiseLevels", None),
+        "omitted": ("[OmittedParameter]", None),
         "residual": ("FitResidual", None),
+        "sensitivity": ("[ParameterSensitivity]", None),
         "warnings": ("[Warning]", None),
     },
     "FitResidual": {
@@ -339,6 +342,12 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "innovation": ("", "N"),
         "predicted": ("", "N"),
     },
+    "OmittedParameter": {
+        "name": ("", None),
+        "shifts": ("", None),
+        "value": ("", None),
+        "z": ("", "1"),
+    },
     "Outcome": {
         "displacement": ("", "m"),
         "dissipated_energy": ("", "J"),
@@ -348,6 +357,11 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "relative": ("", "1"),
         "residual": ("Residual", None),
         "robustness": ("RobustnessReply", None),
+    },
+    "ParameterSensitivity": {
+        "change": ("", None),
+        "name": ("", None),
+        "shifts": ("", None),
     },
     "PathReply": {
         "accuracy": ("Accuracy", None),
@@ -405,6 +419,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "z": ("[]", None),
     },
     "ProfileFitReply": {
+        "axisymmetry": ("", None),
         "centre": ("Axis2", "m"),
         "contact": ("ContactEstimate", None),
         "g_margin": ("", "1"),
@@ -414,6 +429,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "radius_of_curvature": ("Estimate", "m"),
         "raw": ("ColumnPair", None),
         "residual": ("ScanResidual", None),
+        "suggested": ("SuggestedProfile", None),
         "tilt": ("Axis2", "1"),
         "used": ("ColumnPair", None),
         "warnings": ("[Warning]", None),
@@ -538,6 +554,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     "ScanResidual": {
         "correlation_length": ("", "m"),
         "outliers": ("", "1"),
+        "random": ("", None),
         "rms": ("", "m"),
     },
     "SessionPage": {
@@ -714,6 +731,11 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "zz": ("[]", "Pa"),
         "accuracy": ("Accuracy", None),
         "warnings": ("[Warning]", None),
+    },
+    "SuggestedProfile": {
+        "angle": ("", "degrees"),
+        "profile": ("", None),
+        "radii": ("[Estimate]", "m"),
     },
     "SweepReply": {
         "columns": ("{[]}", None),
