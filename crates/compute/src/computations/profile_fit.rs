@@ -309,7 +309,8 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>, line: bool) 
         let found = match (diagnosis.edge, diagnosis.structure) {
             (Some(edge), _) => format!("neighbouring heights differ by a step of {edge:.0} times their noise"),
             (_, ratio) => format!(
-                "the residual is {:.1} times the noise between neighbours, or outliers lie side by side, or rows wander",
+                "the residual is {:.1} times the noise between neighbours, or outliers lie side by side, or rows \
+                 wander",
                 ratio.unwrap_or(1.0)
             ),
         };
@@ -322,15 +323,15 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>, line: bool) 
     if let Some([x, y]) = fit.other_axis {
         let place = if line { in_unit(x, "m") } else { format!("{}, {}", in_unit(x, "m"), in_unit(y, "m")) };
         let message = format!(
-            "another axis, at {place}, fits the scan as well with another tilt and another profile: the standard errors \
-             hold both. Scan farther on the short side, or give `centre` or `level`"
+            "another axis, at {place}, fits the scan as well with another tilt and another profile: the standard \
+             errors hold both. Scan farther on the short side, or give `centre` or `level`"
         );
         warn("axis_ambiguous", message);
     }
     if let Some(step) = fit.height_step {
         let message = format!(
-            "the heights come in steps of {}, which are not small beside the noise: their rounding does not average out, \
-             and the standard errors leave this out",
+            "the heights come in steps of {}, which are not small beside the noise: their rounding does not average \
+             out, and the standard errors leave this out",
             in_unit(step, "m")
         );
         warn("quantised", message);

@@ -10,13 +10,14 @@ use crate::json::{ball, changed, cylinder, of, timeless, with};
 use crate::{good, post};
 
 /// Members whose default is no value that could be written out, or that no computation has.
-const OTHERS: [(&str, &str); 19] = [
+const OTHERS: [(&str, &str); 20] = [
     ("Axis.name", "the pointer, in a table"),
     ("Input.name", "the pointer, which is no name"),
     ("CreateRequest.shear_strength", "of a stored contact, as that of a simulation"),
     ("CyclicPath.normal", "a constant load"),
     ("EqualPeaks.cutoff_radius", "zero, which its range excludes"),
     ("FatemiSocie.youngs_modulus", "the same member as `StrainBased.youngs_modulus`"),
+    ("FitRequest.free", "what the loops can tell"),
     ("FitRequest.noise", "estimated from the loops"),
     ("ForkRequest.label", "of a stored contact"),
     ("ForkRequest.sequence", "of a stored contact"),

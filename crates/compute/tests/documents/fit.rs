@@ -175,7 +175,7 @@ fn every_fault_of_a_loop_has_its_place() {
     let turn =
         |sign: f64| (0..201).max_by(|a, b| (sign * displacement[*a]).total_cmp(&(sign * displacement[*b]))).unwrap();
     let between = turn(1.0).min(turn(-1.0)) + 1..turn(1.0).max(turn(-1.0));
-    let times: Vec<usize> = (0..201).map(|index| if index == 5 { 4 } else { index }).collect();
+    let times: Vec<usize> = (0..201).map(|index| if index == 5 { 3 } else { index }).collect();
     let in_nm = with(body(&[scaled(&displacement, 1e6), force.clone()]), "/units", json!({"displacement": "nm"}));
     let cone = with(whole.clone(), "/contact/profile", json!({"type": "cone", "slope": 0.01}));
     let changed = |pointer: &str, value: Value| with(whole.clone(), pointer, value);

@@ -47,7 +47,7 @@ impl Tests {
         for (index, &parameter) in tested.iter().enumerate() {
             let column = jacobian.column(own + index);
             let projected = covariance.times(&sought_by.tr_mul(&column));
-            let rest = &column - &sought_by * &projected;
+            let rest = column - sought_by * &projected;
             let size = rest.norm_squared();
             let shift = |change: f64| sought.iter().map(|&(place, one)| (one, -projected[place] * change)).collect();
             let distinct = size > DISTINCT * column.norm_squared();

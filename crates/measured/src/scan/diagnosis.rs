@@ -1,10 +1,10 @@
 //! Is the residual of a scan noise, and is the body one of revolution?
 //!
 //! Neighbours on a line tell the noise: where the residual is far larger than their differences, or the rows of a map
-//! differ by more than their noise, or outliers lie side by side, there are steps, grains or rows that wander beside one
-//! surface. About the axis of a body of revolution no residual goes with twice the angle: the terms (u^2 - v^2)/2 and u
-//! v, by least squares, are a second harmonic. A body that has one has the principal curvatures of a paraboloid through
-//! all heights.
+//! differ by more than their noise, or outliers lie side by side, there are steps, grains or rows that wander beside
+//! one surface. About the axis of a body of revolution no residual goes with twice the angle: the terms (u^2 - v^2)/2
+//! and u v, by least squares, are a second harmonic. A body that has one has the principal curvatures of a paraboloid
+//! through all heights.
 
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
@@ -63,8 +63,8 @@ pub struct Diagnosis {
     pub random: Option<bool>,
     /// The residual over the noise of neighbours, where steps, grains or rows that wander lie beside one surface.
     pub structure: Option<f64>,
-    /// The largest step between neighbouring heights, in standard deviations of their noise, if it is the edge of a grain
-    /// or a jump of the instrument.
+    /// The largest step between neighbouring heights, in standard deviations of their noise, if it is the edge of a
+    /// grain or a jump of the instrument.
     pub edge: Option<f64>,
     /// Whether it has a second harmonic about the axis; `None` of a line, which does not show it.
     pub second_harmonic: Option<bool>,
@@ -77,7 +77,8 @@ impl Diagnosis {
         let neighbours = Neighbours::new(fitted, scaled);
         let mean = mean_curvature(fitted);
         let fitted_to_all = scaled.plane.then(|| paraboloid(scaled, units)).flatten();
-        // Far from a body of revolution the axis of the profile may be anywhere: a paraboloid that fits better shows it.
+        // Far from a body of revolution the axis of the profile may be anywhere: a paraboloid that fits better shows
+        // it.
         let mut sizes: Vec<f64> =
             fitted.residuals.iter().zip(&scaled.of_surface).filter(|(_, of)| **of).map(|(e, _)| e.abs()).collect();
         let of_profile = robust_deviation(&mut sizes);

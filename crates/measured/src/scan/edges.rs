@@ -1,8 +1,8 @@
 //! Steps of the heights between neighbours, which the slopes beside them do not explain.
 //!
 //! Along a line across any body whose slope rises, the height from a point to the next changes by a slope between those
-//! on the left and on the right: a kink is no step. What lies beyond both is the edge of a grain, of a scratch, or a jump
-//! of the instrument. A running median takes off spikes of one or two points first, which are outliers.
+//! on the left and on the right: a kink is no step. What lies beyond both is the edge of a grain, of a scratch, or a
+//! jump of the instrument. A running median takes off spikes of one or two points first, which are outliers.
 
 use super::fit::{Fitted, Scaled};
 use crate::robust::robust_deviation;

@@ -118,7 +118,7 @@ fn task(kind: &Kind, seed: u64) -> (Task, Vec<(Parameter, f64)>) {
     let mut within = |low: f64, high: f64| low + (high - low) * random.f64();
     let cycles = if matches!(kind.fault, Fault::Untared(_)) { 1.5 } else { within(4.0, 5.0) };
     let mut scene = Scene {
-        drive: if seed % 2 == 0 { Drive::Sine } else { Drive::Triangle },
+        drive: if seed.is_multiple_of(2) { Drive::Sine } else { Drive::Triangle },
         points: 200.0,
         cycles,
         phase: within(0.0, 1.0),

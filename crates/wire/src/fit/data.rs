@@ -88,8 +88,8 @@ impl ForceUnit {
 }
 
 impl MeasuredLoop {
-    /// Checks the loop and takes it into SI units, `units` being those of displacement and force in m and N, and `timed`
-    /// a parameter that needs times.
+    /// Checks the loop and takes it into SI units, `units` being those of displacement and force in m and N, and
+    /// `timed` a parameter that needs times.
     pub(super) fn check(
         &mut self,
         units: [f64; 2],

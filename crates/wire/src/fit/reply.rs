@@ -64,8 +64,9 @@ pub struct OmittedParameter {
 pub struct ParameterSensitivity {
     /// The quantity that differs from what the fit assumes.
     pub name: FitParameter,
-    /// By how much it differs, in the SI unit of the quantity; a delay of one sample; an offset of 1 % of the force or of the amplitude;
-    /// 1 % of the compliance of the contact; a drift of 1 % over the record. `null` where its unit needs times.
+    /// By how much it differs, in the SI unit of the quantity; a delay of one sample; an offset of 1 % of the force or
+    /// of the amplitude; 1 % of the compliance of the contact; a drift of 1 % over the record. `null` where its unit
+    /// needs times.
     pub change: Option<f64>,
     /// The resulting change of each estimate, in the SI unit of the estimate.
     pub shifts: BTreeMap<FitParameter, f64>,
