@@ -310,7 +310,7 @@ fn warnings(fit: &ScanFit, contact: Option<&scan::ContactEstimate>, line: bool) 
             (Some(edge), _) => format!("neighbouring heights differ by a step of {edge:.0} times their noise"),
             (_, ratio) => format!(
                 "the residual is {:.1} times the noise between neighbours, or outliers lie side by side, or rows \
-                 wander",
+                 drift",
                 ratio.unwrap_or(1.0)
             ),
         };

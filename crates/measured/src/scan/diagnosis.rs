@@ -1,7 +1,7 @@
 //! Is the residual of a scan noise, and is the body one of revolution?
 //!
 //! Neighbours on a line tell the noise: where the residual is far larger than their differences, or the rows of a map
-//! differ by more than their noise, or outliers lie side by side, there are steps, grains or rows that wander beside
+//! differ by more than their noise, or outliers lie side by side, there are steps, grains or rows that drift beside
 //! one surface. About the axis of a body of revolution no residual goes with twice the angle: the terms (u^2 - v^2)/2
 //! and u v, by least squares, are a second harmonic. A body that has one has the principal curvatures of a paraboloid
 //! through all heights.
@@ -20,8 +20,8 @@ const MOST_RATIO: f64 = 4.0;
 const MOST_LAG: f64 = 12.0;
 /// Residuals below this share of the range of the heights are errors of the curve.
 const LEAST_RESIDUAL: f64 = 3e-4;
-/// The variance of the differences of the means of neighbouring rows, over that of noise, beyond which rows wander.
-const MOST_WANDER: f64 = 4.0;
+/// The variance of the differences of the means of neighbouring rows, over that of noise, beyond which rows drift.
+const MOST_DRIFT: f64 = 4.0;
 /// Points that a row needs.
 const ROW_POINTS: usize = 5;
 /// Outliers side by side that are no accident, and how many times as many of such runs as by chance.
@@ -61,7 +61,7 @@ pub struct Paraboloid {
 pub struct Diagnosis {
     /// Whether neighbouring residuals are independent, as of white noise; `None` if there are no neighbours.
     pub random: Option<bool>,
-    /// The residual over the noise of neighbours, where steps, grains or rows that wander lie beside one surface.
+    /// The residual over the noise of neighbours, where steps, grains or rows that drift lie beside one surface.
     pub structure: Option<f64>,
     /// The largest step between neighbouring heights, in standard deviations of their noise, if it is the edge of a
     /// grain or a jump of the instrument.
@@ -89,7 +89,7 @@ impl Diagnosis {
         let second_harmonic = scaled.plane.then(|| is_better || has_second_harmonic(fitted, scaled, mean));
         let paraboloid = fitted_to_all.filter(|_| second_harmonic == Some(true)).map(|(body, _)| body);
         let structured =
-            neighbours.is_structured() || wander(fitted, scaled) > MOST_WANDER || has_clusters(fitted, scaled);
+            neighbours.is_structured() || row_drift(fitted, scaled) > MOST_DRIFT || has_clusters(fitted, scaled);
         let edge = edges::largest(fitted, scaled);
         Diagnosis {
             random: neighbours.random(),
@@ -162,7 +162,7 @@ impl Neighbours {
 }
 
 /// Half the mean square of the differences of neighbouring rows' means, over the variance that noise gives it.
-fn wander(fitted: &Fitted, scaled: &Scaled) -> f64 {
+fn row_drift(fitted: &Fitted, scaled: &Scaled) -> f64 {
     if !scaled.plane {
         return 0.0;
     }

@@ -145,7 +145,7 @@ fn errors_hold_or_the_fault_of_the_surface_is_named() {
         ("clean", Fault::None),
         ("three grains of dust", Fault::Dust),
         ("a step of 100 nm", Fault::Step),
-        ("rows that wander", Fault::Rows),
+        ("rows that drift", Fault::Rows),
         (WALK, Fault::Walk),
         ("heights in steps of 10 nm", Fault::Steps),
     ] {
