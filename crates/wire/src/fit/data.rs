@@ -145,7 +145,7 @@ fn part(times: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::{MeasuredLoop, part};
+    use super::{FitParameter, MeasuredLoop, part};
     use crate::check::{Faults, JsonPath};
 
     /// The times after the check, or the first fault.
@@ -160,7 +160,7 @@ mod tests {
             weight: None,
         };
         let mut faults = Faults::default();
-        measured.check([1e-6, 1.0], true, JsonPath::Root, &mut faults);
+        measured.check([1e-6, 1.0], Some(FitParameter::Drift), JsonPath::Root, &mut faults);
         faults.none_within(JsonPath::Root).ok_or_else(|| format!("{faults:?}"))?;
         Ok(measured.time.unwrap_or_default())
     }
