@@ -7,7 +7,9 @@ use stickslip_wire::{CreateRequest, Move, StressRequest};
 const BALL: &str = r#"{
     "label": "from Rust",
     "profile": {"type": "sphere", "radius": 0.01},
-    "material": {"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}]},
+    "material": {"bodies": [
+        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
+    ]},
     "friction": 0.3,
     "preload": {"normal_force": 10.0}
 }"#;

@@ -65,7 +65,8 @@ impl Computation for FitProfile {
                 "units": {"lateral": "um", "height": "nm"},
                 "load": {
                     "material": {"bodies": [
-                        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
+                        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3},
+                        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
                     ]},
                     "friction": 0.3, "preload": {"normal_force": 1.0}
                 }

@@ -41,7 +41,8 @@ impl Computation for FitLoops {
                 "contact": {
                     "profile": {"type": "sphere", "radius": 0.01},
                     "material": {"bodies": [
-                        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
+                        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3},
+                        {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
                     ]},
                     "friction": 0.2, "preload": {"normal_force": 10.0}
                 },
