@@ -240,7 +240,7 @@ fn move_share(
         contact.apply(&Move {
             tangential: Some(Tangential::Displacement(*displacement)),
             normal: Some(Normal::Indentation(*depth)),
-            relative: false,
+            ..Move::default()
         })?;
         (*normal, *tangential) = (contact.normal_force(), contact.force());
     }

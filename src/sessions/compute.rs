@@ -5,7 +5,7 @@ use jiff::Timestamp;
 use crate::store::{Measured, Record, Reply};
 use stickslip_compute::computations::{Moved, OnContact as _, make_moves, shown_states};
 use stickslip_compute::simulation::bytes::{of_moves, of_records, of_stress};
-use stickslip_compute::simulation::cost::Work;
+use stickslip_compute::simulation::cost::{MEMORY_MOVE_COST, Work};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
@@ -60,7 +60,8 @@ pub(super) async fn compute(
     let profile = live.contact.profile();
     let sought = advance.relax.map_or(0, |relax| relax.task.cost(profile, depth));
     let work = Work { moves, curved, depth, radii, residual: false };
-    let cost = work.cost(profile).saturating_add(sought);
+    let steps = if live.contact.has_memory() { moves as u64 * MEMORY_MOVE_COST } else { 0 };
+    let cost = work.cost(profile).saturating_add(sought).saturating_add(steps);
     let solve = {
         let (advance, by, stop) = (Arc::clone(advance), sessions.by.clone(), stop.clone());
         move || {

@@ -3,7 +3,10 @@
 use std::time::Instant;
 
 use crate::store::{Extent, RECORD_BYTES, Record, Session, Snapshot, Whole};
-use stickslip_compute::simulation::{Failure, Timer, cost::Work};
+use stickslip_compute::simulation::{
+    Failure, Timer,
+    cost::{MEMORY_MOVE_COST, Work},
+};
 use stickslip_compute::{Interrupted, Stop as _};
 use stickslip_wire::{ContactDefinition, limits};
 
@@ -241,7 +244,9 @@ impl Sessions {
     ) -> Result<(Box<LoadedSession>, Result<(), SessionError>), SessionError> {
         let curved = page.iter().filter(|record| record.step.is_curved()).count();
         let id = live.session.id;
-        let cost = Work { moves: page.len(), curved, ..Work::default() }.cost(live.contact.profile());
+        let steps = if live.contact.has_memory() { page.len() as u64 * MEMORY_MOVE_COST } else { 0 };
+        let work = Work { moves: page.len(), curved, ..Work::default() };
+        let cost = work.cost(live.contact.profile()).saturating_add(steps);
         let (stop, _raised_at_the_end) = self.pool.deadline_after(guard.loading);
         let common = Arc::clone(&self.common);
         let replay = move || {

@@ -89,12 +89,17 @@ fn trace_move(
     let step = record.step.step();
     // The copy goes in small steps; the contact itself makes the move as it was made, to the last bit.
     let mut copy = (points > 1).then(|| contact.clone());
+    let duration = step.duration / points as f64;
+    let on_the_way = |contact: &Contact, step: &stickslip_mechanics::Move, part| stickslip_mechanics::Move {
+        duration,
+        ..contact.partial_move(step, part)
+    };
     for index in 1..points {
         check()?;
         let part = index as f64 / points as f64;
         // An intermediate target may be out of range, such as a force of 1e-300 N; then there is no point.
         if let Some(copy) = &mut copy
-            && copy.apply_while(&contact.partial_move(&step, part), record.tolerance, &go_on).is_ok()
+            && copy.apply_while(&on_the_way(contact, &step, part), record.tolerance, &go_on).is_ok()
         {
             let state = copy.state();
             page.push(record.sequence, part, state.displacement, state.force);

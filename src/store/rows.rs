@@ -89,7 +89,7 @@ pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
     row.text(|name| Ok::<_, std::convert::Infallible>(Tenant::new(name)))
 }
 
-/// Sequence, time, the four targets, whether they are relative, the tolerance, the state in the order of [`State`], and
+/// Sequence, time, the four targets, whether they are relative, how long the move takes, the tolerance, the state in the order of [`State`], and
 /// the columns of [`measured`], and the name of the key that made the move.
 pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
     Ok(Record {
@@ -101,6 +101,7 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             indentation: row.next()?,
             normal_force: row.next()?,
             relative: row.next()?,
+            duration: row.next()?,
         },
         tolerance: row.next()?,
         state: State {
@@ -118,6 +119,8 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             memory_depth: usize::try_from(row.count()?).map_err(|error| row.invalid(error))?,
             electrical_conductance: None,
             thermal_conductance: None,
+            time: row.next()?,
+            viscous_work: row.next()?,
         },
         measured: measured(row)?,
         by: row.next::<Option<String>>()?.map(Arc::from),

@@ -13,8 +13,14 @@ use crate::scene::Scene;
 use crate::{four, pascals};
 
 /// The bodies apart.
-const APART: Move =
-    Move { indentation: Some(-1e-9), displacement: Some(1e-8), force: None, normal_force: None, relative: false };
+const APART: Move = Move {
+    indentation: Some(-1e-9),
+    displacement: Some(1e-8),
+    force: None,
+    normal_force: None,
+    duration: None,
+    relative: false,
+};
 
 /// Friction work of a steady cycle of the ball, J, whose amplitude is this part of the displacement of gross slip
 /// (Mindlin & Deresiewicz 1953).

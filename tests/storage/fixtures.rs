@@ -48,7 +48,12 @@ pub fn record(sequence: u64) -> Record {
     let number = sequence as f64 + 0.1;
     Record {
         sequence,
-        step: Move { displacement: Some(number * 1e-9), relative: sequence.is_multiple_of(2), ..Move::default() },
+        step: Move {
+            displacement: Some(number * 1e-9),
+            duration: sequence.is_multiple_of(4).then_some(number / 9.0),
+            relative: sequence.is_multiple_of(2),
+            ..Move::default()
+        },
         tolerance: 1e-10 / number,
         state: State {
             stick_centre: None,
@@ -64,6 +69,8 @@ pub fn record(sequence: u64) -> Record {
             memory_depth: sequence as usize,
             electrical_conductance: None,
             thermal_conductance: None,
+            time: sequence.is_multiple_of(4).then_some(number * 0.7),
+            viscous_work: sequence.is_multiple_of(4).then_some(number * 0.3),
         },
         measured: sequence.is_multiple_of(3).then(|| Measured {
             force: -number / 7.0,

@@ -31,7 +31,7 @@ fn main() {
             sum += forces[1];
         } else {
             let (tangential, normal) = (Some(Tangential::Displacement(displacement)), Some(Normal::Indentation(depth)));
-            own.apply(&Move { tangential, normal, relative: false }).expect("a move");
+            own.apply(&Move { tangential, normal, ..Move::default() }).expect("a move");
             sum += own.force() + 0.0 * own.normal_force();
         }
     }

@@ -107,7 +107,9 @@ impl<C: Clone> Stepped<C> {
 impl Held {
     /// The contact of a definition, as POST /contacts takes it.
     pub fn line(json: &[u8]) -> Result<Held, Fault> {
-        Ok(Held::Line(Stepped::new(Contact::new(setup(json)?)?)))
+        let contact = Contact::new(setup(json)?)?;
+        contact.check_elastic("a contact without a clock")?;
+        Ok(Held::Line(Stepped::new(contact)))
     }
 
     /// One that is moved in the plane, of at most so many rings.
@@ -253,7 +255,7 @@ fn line_step(contact: &mut Contact, Target { load, normal, displacement }: Targe
         _ => return Err(no_load(load)),
     };
     let tangential = displacement.first().copied().map(Tangential::Displacement);
-    Ok(contact.apply(&Move { tangential, normal, relative: false })?)
+    Ok(contact.apply(&Move { tangential, normal, ..Move::default() })?)
 }
 
 fn planar_step(

@@ -58,7 +58,7 @@ fn a_thousand_random_paths_have_the_bits_of_the_crate() {
             assert_eq!(unsafe { step(contact, load, normal, &raw const displacement, forces.as_mut_ptr()) }, SS_OK);
             let tangential = Some(Tangential::Displacement(displacement));
             let mut moved = expected.clone();
-            moved.apply(&Move { tangential, normal: target, relative: false }).unwrap();
+            moved.apply(&Move { tangential, normal: target, ..Move::default() }).unwrap();
             assert_eq!(forces.map(f64::to_bits), [moved.normal_force(), moved.force()].map(f64::to_bits));
             match way {
                 1 => assert_eq!(ss_revert(contact), SS_OK),
@@ -265,7 +265,7 @@ fn threads_step_contacts_of_their_own_and_are_told_of_a_shared_one() {
         .apply(&Move {
             tangential: Some(Tangential::Displacement(999.0 * 1e-10)),
             normal: Some(depth),
-            relative: false,
+            ..Move::default()
         })
         .unwrap();
     assert_eq!(forces[1998..], [alone.normal_force(), alone.force()]);

@@ -57,6 +57,7 @@
 //! | `path` | how does a contact move, which displacement gives a force, how are curved moves followed? |
 //! | `contact` | what is a contact made of, what are its state, pressure, error and bytes? |
 //! | `slip_history` | what is left of the path under a limit law, and what work does a move dissipate? |
+//! | `viscoelastic` | what do springs with memory carry, where bodies relax? |
 //! | [`Indenter`] | what does a contact ask of a profile, resolved once? |
 //! | [`profile`] | what does the shape of the indenter mean for a ring of the contact? |
 //! | [`elasticity`], `conductance` | which two moduli do the bodies have together, and how do they conduct? |
@@ -86,6 +87,7 @@ pub mod subsurface;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod viscoelastic;
 pub mod wear;
 
 /// Runs the example of the README as a test.
@@ -98,7 +100,7 @@ pub use contact::Contact;
 pub use contact::accuracy::ErrorEstimate;
 pub use contact::normal::{ContactSummary, Preload};
 pub use contact::packed::ENGINE;
-pub use contact::state::{Friction, Move, Normal, Regime, Setup, State, Tangential};
+pub use contact::state::{Friction, Law, Move, Normal, Regime, Setup, State, Tangential};
 pub use elasticity::{Body, Elasticity};
 pub use indenter::Indenter;
 pub use numerics::double_double::DoubleDouble;
@@ -109,3 +111,4 @@ pub use range::unit_prefix::{in_unit, unit_prefix};
 pub use springs::Springs;
 pub use subsurface::Stress;
 pub use surface::shear_stress::{Peak, Residual};
+pub use viscoelastic::{MOST_TERMS, Prony, PronyTerm};

@@ -162,9 +162,9 @@ fn moves_by_force_and_the_search_for_a_load_copy_no_history() {
     let (calls, ()) = during(|| {
         let (tangential, load) = (Some(Tangential::Force(0.2 * limit)), contact.normal_force());
         let normal = Some(Normal::NormalForce(0.9 * load));
-        let stopped = contact.apply_while(&Move { tangential, normal, relative: false }, 1e-6, &|| false);
+        let stopped = contact.apply_while(&Move { tangential, normal, ..Move::default() }, 1e-6, &|| false);
         assert_eq!(stopped, Err(Error::Interrupted));
-        contact.apply(&Move { tangential, normal, relative: false }).unwrap();
+        contact.apply(&Move { tangential, normal, ..Move::default() }).unwrap();
     });
     assert_eq!(calls.copies, 0, "under a changing load, refused or not");
     let (calls, _) = during(|| best_load(&contact, Drive::Force(0.1 * limit), 0.0, &|| true).unwrap().unwrap());

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::subsurface::Side;
-use stickslip_mechanics::{Conduction, Friction, Setup, elasticity};
+use stickslip_mechanics::{Conduction, Friction, Law, Prony, Setup, elasticity};
 
+use super::limits::count;
 use super::line_profiles::BulkPerForce;
 use crate::prelude::*;
 
@@ -27,6 +28,20 @@ pub struct ContactDefinition {
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     /// and under a constant load.
     pub bulk: Option<BulkPerForce>,
+    /// The memory of the bodies, a Prony series of 1 to 16 terms: their moduli are those of the instant, and relax as
+    /// R(t) = 1 − Σ ratio (1 − exp(−t/time)). Both bodies are alike, or one is rigid. The preload is put on at once at
+    /// time 0, and moves have a `duration`.
+    pub prony: Option<Vec<PronyTerm>> = Items(PRONY_TERMS),
+}
+
+/// A term of a Prony series.
+#[schema(example = json!({"ratio": 0.5, "time": 0.1}))]
+pub struct PronyTerm: Copy {
+    /// By how much of the instantaneous modulus it relaxes, a pure number; all of them add up to 1 at most, which is a
+    /// fluid.
+    pub ratio: f64 = range::PRONY_RATIO,
+    /// Its relaxation time, s.
+    pub time: f64 = range::PRONY_TIME,
 }
 
 /// An isotropic, linearly elastic body.
@@ -58,8 +73,8 @@ pub struct Effective {
 /// A checked definition of Coulomb's law alone, whose profile copies and other contacts share.
 pub type SharedSetup = Setup<Arc<mechanics::Profile>>;
 
-/// The same under any limit of friction.
-pub type FrictionSetup = Setup<Arc<mechanics::Profile>, Friction>;
+/// The same under any limit of friction, of bodies with or without memory.
+pub type FrictionSetup = Setup<Arc<mechanics::Profile>, Law>;
 
 /// The profile of the contact that a document defines.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +125,8 @@ pub enum Rigid {
     Rigid,
 }
 
+/// How many terms a Prony series has.
+pub(crate) const PRONY_TERMS: RangeInclusive<usize> = count(&range::PRONY_TERMS);
 /// How many bodies there are.
 const BODIES: Items = Items(2..=2);
 
@@ -153,7 +170,7 @@ impl ContactDefinition {
         match self.check_any(at, profiles, faults)?.coulomb("this computation") {
             Ok(setup) => Some(setup),
             Err(error) => {
-                faults.unanswerable(at.member("shear_strength"), error);
+                faults.unanswerable(at.member(member_of_law(&error)), error);
                 None
             }
         }
@@ -182,7 +199,41 @@ impl ContactDefinition {
             return None;
         }
         let shear_strength = self.shear_strength.unwrap_or(0.0);
-        Some(Setup { profile, elasticity, friction: Friction { coefficient: self.friction, shear_strength }, preload })
+        let law = Law { limit: Friction { coefficient: self.friction, shear_strength }, memory: None };
+        let setup = Setup { profile, elasticity, friction: law, preload };
+        match &self.prony {
+            Some(terms) => self.check_memory(terms, setup, at.member("prony"), faults),
+            None => Some(setup),
+        }
+    }
+
+    /// The setup with the memory of its bodies.
+    fn check_memory(
+        &self,
+        terms: &[PronyTerm],
+        mut setup: FrictionSetup,
+        at: JsonPath<'_>,
+        faults: &mut Faults,
+    ) -> Option<FrictionSetup> {
+        let terms: Vec<mechanics::PronyTerm> =
+            terms.iter().map(|&PronyTerm { ratio, time }| mechanics::PronyTerm { ratio, time }).collect();
+        match Prony::new(&terms) {
+            Ok(prony) => setup.friction.memory = Some(Arc::new(prony)),
+            Err(error) => faults.unanswerable(at, error),
+        }
+        if let Some([Body::Elastic(first), Body::Elastic(second)]) = self.material.bodies()
+            && (first.youngs_modulus.to_bits(), first.poisson_ratio.to_bits())
+                != (second.youngs_modulus.to_bits(), second.poisson_ratio.to_bits())
+        {
+            faults.add(at, "both bodies relax alike: give them the same constants, or make one of them rigid");
+        }
+        if self.shear_strength.is_some_and(|strength| strength > 0.0) {
+            faults.unanswerable(at, mechanics::Error::Viscoelastic("`shear_strength`"));
+        }
+        faults.needs_round_contact(Some(&setup), at, "`prony`");
+        faults.needs_stress_field(Some(&setup), at);
+        faults.none_within(at)?;
+        Some(setup)
     }
 
     /// The JSON pointer, in a definition with this preload, to the quantity that the mechanics refuses. A preload can
@@ -191,6 +242,7 @@ impl ContactDefinition {
         match quantity {
             Quantity::Friction => "/friction",
             Quantity::ShearStrength => "/shear_strength",
+            Quantity::PronyTerms | Quantity::PronyRatio | Quantity::PronyTime => "/prony",
             Quantity::NormalForce | Quantity::Indentation | Quantity::ContactRadius => match preload {
                 mechanics::Preload::NormalForce(_) => "/preload/normal_force",
                 mechanics::Preload::Indentation(_) => "/preload/indentation",
@@ -202,6 +254,11 @@ impl ContactDefinition {
             _ => "/profile",
         }
     }
+}
+
+/// The member that has what a computation does not know.
+pub(crate) fn member_of_law(error: &mechanics::Error) -> &'static str {
+    if matches!(error, mechanics::Error::Viscoelastic(_)) { "prony" } else { "shear_strength" }
 }
 
 impl Material {

@@ -16,7 +16,7 @@ const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 
 requests! {
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
-/// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without
+/// (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement stays, without
 /// a normal one the indentation stays.
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct Move: Copy, Default {
@@ -28,6 +28,9 @@ pub struct Move: Copy, Default {
     pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N.
     pub normal_force: Option<f64> = PerhapsIncrement,
+    /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
+    /// it waits.
+    pub duration: Option<f64> = range::DURATION,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -142,7 +145,8 @@ impl Move {
         if self.indentation.is_some() && self.normal_force.is_some() {
             faults.add(at.member("normal_force"), "conflicts with `indentation`: at most one normal target is allowed");
         }
-        if [self.displacement, self.force, self.indentation, self.normal_force].iter().all(Option::is_none) {
+        let named = [self.displacement, self.force, self.indentation, self.normal_force, self.duration];
+        if named.iter().all(Option::is_none) {
             faults.add(
                 at,
                 "no target: name `displacement` or `force`, or `indentation` or `normal_force`, or one of each",
@@ -157,6 +161,7 @@ impl Move {
             Quantity::Force => self.force.is_some(),
             Quantity::Indentation => self.indentation.is_some(),
             Quantity::NormalForce => self.normal_force.is_some(),
+            Quantity::Duration => self.duration.is_some(),
             _ => false,
         }
     }
@@ -172,7 +177,8 @@ impl Move {
     pub fn step(&self) -> mechanics::Move {
         let tangential = self.displacement.map(Tangential::Displacement).or(self.force.map(Tangential::Force));
         let normal = self.indentation.map(Normal::Indentation).or(self.normal_force.map(Normal::NormalForce));
-        mechanics::Move { tangential, normal, relative: self.relative }
+        let duration = self.duration.unwrap_or(0.0);
+        mechanics::Move { tangential, normal, relative: self.relative, duration }
     }
 }
 

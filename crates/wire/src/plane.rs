@@ -80,7 +80,7 @@ impl Limit<Components> for Range {
 
 requests! {
 /// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
-/// (`indentation` or `normal_force`), at least one in all. Without a tangential target the displacement stays, without
+/// (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement stays, without
 /// a normal one the indentation stays. A pair [x, y] is a target in the plane.
 #[schema(example = json!({"displacement": [1e-7, 5e-8]}))]
 pub struct SimulatedMove: Copy, Default {
@@ -92,6 +92,9 @@ pub struct SimulatedMove: Copy, Default {
     pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N; negative only as an increment.
     pub normal_force: Option<f64> = PerhapsIncrement,
+    /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`, along a line.
+    /// Without a target it waits.
+    pub duration: Option<f64> = range::DURATION,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -281,6 +284,7 @@ impl From<Move> for SimulatedMove {
             force: step.force.map(Components::One),
             indentation: step.indentation,
             normal_force: step.normal_force,
+            duration: step.duration,
             relative: step.relative,
         }
     }
@@ -307,8 +311,8 @@ impl SimulatedMove {
     /// The move along x.
     fn along_x(&self) -> Move {
         let [x, force] = self.pairs().map(|(_, components)| components.map(|components| components.pair()[0]));
-        let SimulatedMove { indentation, normal_force, relative, .. } = *self;
-        Move { displacement: x, force, indentation, normal_force, relative }
+        let SimulatedMove { indentation, normal_force, duration, relative, .. } = *self;
+        Move { displacement: x, force, indentation, normal_force, duration, relative }
     }
 
     fn in_plane(&self) -> rings::PlanarMove {
@@ -353,6 +357,11 @@ impl SimulatedPath {
                 faults.none_within(at)?;
                 let first_pair = first_pair(moves);
                 if rings || first_pair.is_some() {
+                    let timed = moves.iter().position(|step| step.duration.is_some_and(|duration| duration > 0.0));
+                    if let Some(timed) = timed {
+                        let error = stickslip_mechanics::Error::Viscoelastic("motion in the plane");
+                        return faults.refuse(place.index(timed).member("duration"), error);
+                    }
                     return plan(&mut moves.iter().copied(), Form::Moves, first_pair);
                 }
             }

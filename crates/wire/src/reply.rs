@@ -63,6 +63,11 @@ pub struct State: Copy, Default omits Option of mechanics::State {
     pub electrical_conductance: Option<f64>,
     /// Thermal conductance of the contact, W/K, if its bodies have a `conductivity`.
     pub thermal_conductance: Option<f64>,
+    /// Time since the preload, s, if the bodies have `prony`.
+    pub time: Option<f64>,
+    /// Work of the tangential force that the bodies have dissipated by their memory since the start, J, if they have
+    /// `prony`.
+    pub viscous_work: Option<f64>,
 }
 }
 
@@ -132,9 +137,9 @@ pub struct Accuracy: Default omits Option {
     /// Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
     /// load of the path, a pure number; stated for rings only.
     pub work_error: Option<f64>,
-    /// Number of rings of the solver in the plane.
+    /// Number of rings of the solver in the plane, or of springs across the radius of bodies with memory.
     pub count: Option<usize>,
-    /// Number of steps on the whole path in the finest discretisation of the rings.
+    /// Number of steps on the whole path in the finest discretisation of rings, or of springs with memory.
     pub steps: Option<usize>,
     /// How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure
     /// number, if Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts
@@ -181,7 +186,8 @@ pub struct Warning: Eq {
     /// `turns_as_sampled`, `turn_in_gap`, `tolerance_not_met`, `stress_error`, `interaction_neglected`,
     /// `load_curve_alone`, `elliptic_slip`, `bulk_shift_neglected`, `bulk_work_neglected`, `no_worn_profile`,
     /// `unbounded_stress`, `no_positive_value`, `life_scatter`, `grid_outside_contact`, `grid_rim`,
-    /// `grid_misses_largest`, `worn_profile_error`, `points_failed`.
+    /// `grid_misses_largest`, `worn_profile_error`, `points_failed`,
+    /// `beyond_annulus`.
     pub code: String,
     /// An explanation for people.
     pub message: String,
@@ -210,6 +216,7 @@ pub fn finite(value: f64) -> Option<f64> {
 same_members! {
     mechanics::State [State] displacement force indentation normal_force contact_radius stick_radius stick_centre regime
     dissipated_energy elastic_energy memory_depth electrical_conductance thermal_conductance
+    time viscous_work
 }
 
 impl Residual {

@@ -1,5 +1,6 @@
 //! The bodies and replies of `/contacts`: contacts that the server keeps.
 
+use super::definition::{PRONY_TERMS, PronyTerm};
 use super::document::checked_alone;
 use super::limits::Characters;
 use super::line_profiles::BulkPerForce;
@@ -40,6 +41,10 @@ pub struct CreateRequest {
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     /// and under a constant load.
     pub bulk: Option<BulkPerForce>,
+    /// The memory of the bodies, a Prony series of 1 to 16 terms: their moduli are those of the instant, and relax as
+    /// R(t) = 1 − Σ ratio (1 − exp(−t/time)). Both bodies are alike, or one is rigid. The preload is put on at once at
+    /// time 0, and moves have a `duration`.
+    pub prony: Option<Vec<PronyTerm>> = Items(PRONY_TERMS),
 }
 
 /// A move, with an optional request for the stresses after it.
@@ -53,6 +58,9 @@ pub struct MoveRequest: Default {
     pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N.
     pub normal_force: Option<f64> = PerhapsIncrement,
+    /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
+    /// it waits.
+    pub duration: Option<f64> = range::DURATION,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -256,8 +264,8 @@ impl Document for CreateRequest {
     }
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let CreateRequest { label, profile, material, friction, shear_strength, preload, bulk } = self;
-        let definition = ContactDefinition { profile, material, friction, shear_strength, preload, bulk };
+        let CreateRequest { label, profile, material, friction, shear_strength, preload, bulk, prony } = self;
+        let definition = ContactDefinition { profile, material, friction, shear_strength, preload, bulk, prony };
         let setup = definition.check_any(JsonPath::Root, profiles, faults);
         setup.map(|setup| Creation { label, definition, setup })
     }
@@ -267,8 +275,9 @@ impl Document for MoveRequest {
     type Checked = Advance;
 
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let MoveRequest { displacement, force, indentation, normal_force, relative, stress, tolerance } = self;
-        let step = Move { displacement, force, indentation, normal_force, relative };
+        let MoveRequest { displacement, force, indentation, normal_force, duration, relative, stress, tolerance } =
+            self;
+        let step = Move { displacement, force, indentation, normal_force, duration, relative };
         step.check(JsonPath::Root, faults);
         let stress = stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
         let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
@@ -278,8 +287,8 @@ impl Document for MoveRequest {
 
 impl From<Move> for MoveRequest {
     fn from(step: Move) -> Self {
-        let Move { displacement, force, indentation, normal_force, relative } = step;
-        MoveRequest { displacement, force, indentation, normal_force, relative, ..MoveRequest::default() }
+        let Move { displacement, force, indentation, normal_force, duration, relative } = step;
+        MoveRequest { displacement, force, indentation, normal_force, duration, relative, ..MoveRequest::default() }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The body of `POST /simulate` and its reply.
 
+use super::definition::member_of_law;
 use super::limits::{SPRING_SEARCH, SPRING_STEPS};
 use super::plane::{PlanarPlan, SimulatedPath};
 use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
@@ -154,17 +155,20 @@ impl Document for SimulateRequest {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
         let mut tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let memory = setup.as_ref().is_some_and(|setup| setup.friction.memory.is_some());
         let law = match (&plan, &self.solver) {
             (Some(Plan::Plane(_)), _) | (_, Some(Solver::Rings(_))) => Some("motion in the plane"),
             (_, Some(Solver::Springs(_))) => Some("the spring foundation"),
             (Some(Plan::EqualPeaks(_)), _) => Some("`equal_peaks`"),
             _ if subsurface.is_some() => Some("`subsurface`"),
+            _ if memory && stress.is_some() => Some("`stress`"),
+            _ if memory && self.residual => Some("`residual`"),
             _ => None,
         };
         if let Some((what, setup)) = law.zip(setup.clone())
             && let Err(error) = setup.coulomb(what)
         {
-            faults.unanswerable(JsonPath::Root.member("contact").member("shear_strength"), error);
+            faults.unanswerable(JsonPath::Root.member("contact").member(member_of_law(&error)), error);
         }
         if let Some(Plan::Plane(plane)) = &plan {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()));

@@ -13,8 +13,8 @@ macro_rules! channel {
 macro_rules! move_columns {
     () => {
         "sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, \
-         tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
-         dissipated_energy, elastic_energy, memory_depth, observed_force, observed_at, made_by"
+         duration, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
+         dissipated_energy, elastic_energy, memory_depth, time, viscous_work, observed_force, observed_at, made_by"
     };
 }
 
@@ -66,8 +66,8 @@ WITH locked AS (
     SET sequence = request.sequence,
         updated_at = coalesce(request.at, contacts.updated_at),
         updated_ns = coalesce(request.ns, contacts.updated_ns)
-    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[], $45::timestamptz[],
-        $46::smallint[]) AS request (id, expected, sequence, at, ns, moved_at, moved_ns)
+    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[], $48::timestamptz[],
+        $49::smallint[]) AS request (id, expected, sequence, at, ns, moved_at, moved_ns)
     JOIN locked ON locked.id = request.id AND locked.sequence = request.expected
         AND (request.moved_at IS NULL OR (locked.updated_at, locked.updated_ns) = (request.moved_at, request.moved_ns))
     WHERE contacts.id = locked.id
@@ -80,20 +80,20 @@ WITH locked AS (
     FROM unnest($6::uuid[], $7::bigint[], $8::timestamptz[], $9::smallint[], $10::double precision[],
         $11::double precision[], $12::double precision[], $13::double precision[], $14::boolean[],
         $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
-        $19::double precision[], $20::double precision[], $21::double precision[], $22::text[],
-        $23::double precision[], $24::double precision[], $25::bigint[], $26::double precision[], $27::bigint[],
-        $28::text[], $29::bigint[])
+        $19::double precision[], $20::double precision[], $21::double precision[], $22::double precision[],
+        $23::text[], $24::double precision[], $25::double precision[], $26::bigint[], $27::double precision[],
+        $28::double precision[], $29::double precision[], $30::bigint[], $31::text[], $32::bigint[])
         AS move (contact)
     JOIN won ON won.id = move.contact
 ), made AS (
     INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
-    SELECT * FROM unnest($36::uuid[], $37::text[], $38::text[], $39::bigint[], $40::timestamptz[], $41::smallint[],
-        $42::timestamptz[], $43::smallint[], $44::text[])
+    SELECT * FROM unnest($39::uuid[], $40::text[], $41::text[], $42::bigint[], $43::timestamptz[], $44::smallint[],
+        $45::timestamptz[], $46::smallint[], $47::text[])
     RETURNING id
 ), kept AS (
     INSERT INTO receipts (key, fingerprint, created, sequence, body)
     SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
-    FROM unnest($30::uuid[], $31::text[], $32::bytea[], $33::uuid[], $34::bigint[], $35::bytea[])
+    FROM unnest($33::uuid[], $34::text[], $35::bytea[], $36::uuid[], $37::bigint[], $38::bytea[])
         AS receipt (contact, key, fingerprint, created, sequence, body)
     JOIN (SELECT id FROM won UNION ALL SELECT id FROM made) AS changed ON changed.id = receipt.contact
     ORDER BY receipt.key

@@ -12,8 +12,8 @@ use crate::store::rows::{self, RowReader, Scalar};
 
 /// The columns of a move beside its contact, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, \
-     relative, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
-     dissipated_energy, elastic_energy, memory_depth, observed_force, observed_at, made_by, negative_zeros";
+     relative, duration, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
+     dissipated_energy, elastic_energy, memory_depth, time, viscous_work, observed_force, observed_at, made_by, negative_zeros";
 
 /// The columns of [`rows::summary`], of [`CONTACTS`].
 pub(super) const SUMMARY_COLUMNS: &str = "c.id, c.label, coalesce(m.sequence, 0), c.created_at, \
@@ -108,6 +108,7 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         step.indentation,
         step.normal_force,
         step.relative,
+        step.duration,
         tolerance,
         state.displacement,
         state.force,
@@ -119,6 +120,8 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         state.dissipated_energy,
         state.elastic_energy,
         to_integer(state.memory_depth as u64)?,
+        state.time,
+        state.viscous_work,
         measured.map(|measured| measured.force),
         measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?,
         by.as_deref(),
@@ -142,7 +145,7 @@ pub(super) fn record(row: &mut Reader<'_, '_>) -> rusqlite::Result<Record> {
 }
 
 /// The numbers of a move, in the order of the bits of `negative_zeros`.
-fn numbers(record: &mut Record) -> [Option<&mut f64>; 14] {
+fn numbers(record: &mut Record) -> [Option<&mut f64>; 17] {
     let Record { step, tolerance, state, measured, .. } = record;
     [
         step.displacement.as_mut(),
@@ -159,6 +162,9 @@ fn numbers(record: &mut Record) -> [Option<&mut f64>; 14] {
         Some(&mut state.dissipated_energy),
         Some(&mut state.elastic_energy),
         measured.as_mut().map(|measured| &mut measured.force),
+        step.duration.as_mut(),
+        state.time.as_mut(),
+        state.viscous_work.as_mut(),
     ]
 }
 

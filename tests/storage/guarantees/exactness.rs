@@ -30,7 +30,7 @@ const AWKWARD: [f64; 18] = [
     0.300_000_000_000_000_04,
 ];
 
-/// A move of fourteen numbers.
+/// A move of seventeen numbers.
 fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
     let mut optional = |present: bool| present.then(&mut number);
     let step = Move {
@@ -38,6 +38,7 @@ fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
         force: optional(sequence % 2 == 1),
         indentation: optional(sequence.is_multiple_of(3)),
         normal_force: optional(sequence % 3 == 1),
+        duration: optional(sequence % 4 == 1),
         relative: sequence.is_multiple_of(5),
     };
     let state = State {
@@ -49,6 +50,8 @@ fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
         stick_radius: number(),
         dissipated_energy: number(),
         elastic_energy: number(),
+        time: (sequence % 4 == 1).then(&mut number),
+        viscous_work: (sequence % 4 == 1).then(&mut number),
         ..record(sequence).state
     };
     let measured = Some(Measured { force: number(), at: None });

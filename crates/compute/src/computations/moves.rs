@@ -9,7 +9,7 @@ use stickslip_wire::session::Advance;
 
 use super::find_from_state;
 use crate::computations::prelude::*;
-use crate::simulation::{FarMove, equal_peaks, follow, new_warnings, stresses};
+use crate::simulation::{FarMove, WITH_MEMORY, annulus_warning, equal_peaks, follow, new_warnings, stresses};
 
 /// The reason for the exact solver on a contact with a history.
 const REASON: &str = "stored contacts use the exact solver";
@@ -45,13 +45,16 @@ pub fn make_moves(
     if advance.relax.is_some() || matches!(advance.plan, Plan::EqualPeaks(_)) {
         contact.check_coulomb("a protocol").map_err(|error| Failure::at("", error))?;
     }
+    if let Plan::Observations(_) = advance.plan {
+        contact.check_elastic("the friction of observations").map_err(|error| Failure::at("", error))?;
+    }
     let relaxed = advance.relax.map(|relax| find_from_state(contact, &relax.task, stop)).transpose()?;
     let plan = relaxed.as_ref().map(|found| Plan::Displacement(found.path.displacement.clone()));
     let plan = plan.as_ref().unwrap_or(&advance.plan);
     let protocol = equal_peaks(plan, contact)?;
     let (before, error_before) = (contact.contact_radius(), contact.path_error());
     let (mut largest, mut error, mut path_error) = (before, 0.0f64, 0.0f64);
-    let mut far = FarMove::from(contact);
+    let (mut far, beyond) = (FarMove::from(contact), contact.beyond_annulus());
     let begin = Instant::now();
     let followed = follow(contact, plan, protocol.as_ref(), tolerance, stop, |step, contact| {
         largest = largest.max(contact.contact_radius());
@@ -65,12 +68,13 @@ pub fn make_moves(
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     let followed_in = begin.elapsed();
     let stress = advance.stress.as_ref().map(|sampling| stresses(contact, sampling, stop)).transpose()?;
-    let mut accuracy = accuracy(contact, timer, REASON);
+    let reason = if contact.has_memory() { WITH_MEMORY } else { REASON };
+    let mut accuracy = accuracy(contact, timer, reason);
     // Gross slip erases the error of a curved path, but not that of the states before it.
     accuracy.force_error += path_error.max(contact.path_error()) - contact.path_error();
-    let excess = excess_error(error, tolerance, advance.plan.curved());
+    let excess = excess_error(error, contact.tolerance(tolerance), advance.plan.curved());
     let mut warnings = new_warnings(contact, before, largest, excess);
-    warnings.extend(far.warning());
+    warnings.extend(far.warning().into_iter().chain(annulus_warning(beyond, contact)));
     Ok(Moved { stress, protocol, relaxed, accuracy, warnings, followed_in })
 }
 

@@ -263,10 +263,12 @@ pub fn columns_of_some_states<'a>(
     first: Option<&State>,
     state: impl Fn(usize) -> &'a State + Copy + Send + 'a,
 ) -> Vec<Column<'a>> {
-    let columns: [OptionalColumn; 3] = [
+    let columns: [OptionalColumn; 5] = [
         ("stick_centre", "m", |state| state.stick_centre),
         ("electrical_conductance", "S", |state| state.electrical_conductance),
         ("thermal_conductance", "W/K", |state| state.thermal_conductance),
+        ("time", "s", |state| state.time),
+        ("viscous_work", "J", |state| state.viscous_work),
     ];
     let has = |(_, _, of): &OptionalColumn| first.is_some_and(|first| of(first).is_some());
     let column = |(name, unit, of): OptionalColumn| Column::floats(name, unit, move |row| of(state(row)));

@@ -30,6 +30,8 @@ pub const WORKSPACE: usize = 4 * 1024 * 1024;
 
 /// A number as JSON, with its comma.
 pub const NUMBER_LENGTH: usize = 24;
+/// Springs with memory, and each term of theirs.
+const MEMORY_SPRINGS: usize = 1_536 * 2 * 8;
 /// A state as JSON.
 pub const STATE_LENGTH: usize = 512;
 
@@ -74,7 +76,10 @@ pub fn of_simulation(simulation: &Simulation) -> usize {
         Some(Solver::Springs(springs)) => springs.count * SPRING,
         _ => 0,
     };
+    // A contact, the one that a step begins with, and the one that a move begins with.
+    let memory = simulation.definition.prony.as_ref().map_or(0, |terms| 3 * MEMORY_SPRINGS * (1 + terms.len()));
     of_moves(&simulation.plan, simulation.steps)
+        + memory
         + of_stress(radii)
         + of_shape(&simulation.definition.profile)
         + simulation.subsurface.as_ref().map_or(0, of_subsurface)

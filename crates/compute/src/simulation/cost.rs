@@ -23,6 +23,8 @@ const CURVED_MOVE_COST: u64 = 3_000_000;
 const PIECE_COST: u64 = 2;
 /// The contribution of one piece to the search for extrema at another on a sphere.
 const PAIR_COST: u64 = 1;
+/// One move of a contact with memory, whose springs make some steps.
+pub const MEMORY_MOVE_COST: u64 = 2_000_000;
 /// One radius, apart from the slip history, and its numbers written as JSON.
 pub const RADIUS_COST: u64 = 200;
 /// The search for extrema on another shape, at the least.
@@ -217,7 +219,8 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let curved = simulation.plan.curved();
     let exact = Work { moves, curved, depth: 0, radii, residual: simulation.residual }.cost(&simulation.setup.profile);
     let below = |task| of_subsurface(&simulation.setup.profile, task, moves);
-    let exact = exact.saturating_add(simulation.subsurface.as_ref().map_or(0, below));
+    let steps = simulation.setup.friction.memory.as_ref().map_or(0, |_| moves as u64 * MEMORY_MOVE_COST);
+    let exact = exact.saturating_add(steps).saturating_add(simulation.subsurface.as_ref().map_or(0, below));
     match simulation.solver {
         None | Some(Solver::Exact | Solver::Rings(_)) => exact,
         Some(Solver::Springs(springs)) => {

@@ -23,7 +23,8 @@ pub use plane::{follow_in_plane, simulate_any};
 pub use prepare::{Anew, check, check_parsed, cost_of_preparation};
 pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
 pub use run::{
-    contact, cycle_moves, equal_peaks, follow, refused_at, residual, sampled, simulate, spring_foundation, stresses,
+    WITH_MEMORY, contact, cycle_moves, equal_peaks, follow, refused_at, residual, sampled, simulate, spring_foundation,
+    stresses,
 };
 pub use solver::Solver;
 pub use stated_accuracy::{Timer, accuracy};
@@ -31,7 +32,8 @@ pub use stress_below::subsurface;
 pub use sweep::{Sweep, SweepResult, Worker};
 pub use trace::{Point, trace, trace_simulation};
 pub use warnings::{
-    FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, bulk_warning, excess_error, new_warnings, present_warnings, warnings_at,
+    FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, annulus_warning, bulk_warning, excess_error, new_warnings, present_warnings,
+    warnings_at,
 };
 
 use std::time::Duration;
@@ -165,6 +167,9 @@ impl Failure {
                 | mechanics::Error::NothingSlides
                 | mechanics::Error::RoundContact(_)
                 | mechanics::Error::ShearStrength(_)
+                | mechanics::Error::Viscoelastic(_)
+                | mechanics::Error::NoMemory
+                | mechanics::Error::FluidUnderLoad
                 | mechanics::Error::BulkNeedsConstantLoad
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::NoStressField { .. } => Code::NoStressField,
@@ -204,6 +209,7 @@ pub fn needs_stress_field(contact: &mechanics::Contact, pointer: &str) -> Result
 pub fn quantity(error: &mechanics::Error) -> Option<Quantity> {
     match error {
         mechanics::Error::OutOfRange { quantity, .. } => Some(*quantity),
+        mechanics::Error::NoMemory | mechanics::Error::FluidUnderLoad => Some(Quantity::Duration),
         _ => None,
     }
 }

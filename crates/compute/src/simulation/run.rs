@@ -5,15 +5,17 @@ use std::time::Duration;
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::range::Quantity;
-use stickslip_mechanics::{Friction, Preload, Setup, Springs, protocol, springs};
+use stickslip_mechanics::{Law, Preload, Setup, Springs, protocol, springs};
 
 use super::stress_below::subsurface;
-use super::warnings::{FarMove, bulk_warning, stress_warning, warnings_at};
+use super::warnings::{FarMove, annulus_warning, bulk_warning, stress_warning, warnings_at};
 use crate::LONGEST_WORK;
 use crate::prelude::*;
 
 /// The reason for a solver that the request names.
 const AS_ASKED: &str = "as asked for";
+/// The reason for springs where the bodies have memory.
+pub const WITH_MEMORY: &str = "bodies with memory have no slip history: springs with memory step the path";
 /// The reason for the exact solver where rings are asked for.
 const ALONG_ONE_LINE: &str =
     "in place of the rings asked for: all moves lead along one line, which has an exact solution";
@@ -45,6 +47,7 @@ pub(super) fn simulate_on(
     let reason = match (simulation.solver, simulation.plan.curved()) {
         (Some(wire::Solver::Rings(_)), _) => ALONG_ONE_LINE,
         (Some(_), _) => AS_ASKED,
+        _ if contact.has_memory() => WITH_MEMORY,
         (None, 0) => "every move of this path has an exact solution, which is also the cheapest",
         (None, _) => "only this solver follows moves straight in a force under changing load, to the tolerance",
     };
@@ -94,7 +97,7 @@ pub(super) fn run<S: Solver>(
     accuracy.force_error += path_error - solver.path_error();
     // A table, which may have noise, has no vertical edge.
     let indentation = summary.indentation.max(solver.exact().indenter().level_at_edge(largest));
-    let excess = excess_error(path_error, simulation.tolerance, curved);
+    let excess = excess_error(path_error, solver.exact().tolerance(simulation.tolerance), curved);
     Ok(SimulateReply {
         contact: summary.into(),
         steps,
@@ -107,6 +110,7 @@ pub(super) fn run<S: Solver>(
             .chain(stress_warning(simulation.stress.is_some() || simulation.residual, accuracy.stress_error))
             .chain(bulk_warning(simulation.subsurface.as_ref().is_some_and(|task| task.bulk.is_some())))
             .chain(far.warning())
+            .chain(annulus_warning(false, solver.exact()))
             .collect(),
         accuracy,
     })
@@ -116,7 +120,7 @@ pub(super) fn run<S: Solver>(
 ///
 /// # Errors
 /// [`Cause::Refused`] if the preload cannot be reached.
-pub fn contact<F: Into<Friction>>(setup: Setup<Arc<Profile>, F>, base: &str) -> Result<Contact, Failure> {
+pub fn contact<F: Into<Law>>(setup: Setup<Arc<Profile>, F>, base: &str) -> Result<Contact, Failure> {
     let refused = refused_at(base, setup.preload);
     Contact::new(setup).map_err(refused)
 }
@@ -152,6 +156,7 @@ pub fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> 
             mechanics::Error::BeyondProfile { .. } => place_of(Quantity::ContactRadius),
             mechanics::Error::BeyondReferenceLength { .. } => "/profile/reference_length",
             mechanics::Error::BulkTooLarge { .. } => "/bulk/stress_per_force",
+            mechanics::Error::Viscoelastic(_) => "/prony",
             mechanics::Error::ShearStrength(_)
             | mechanics::Error::LineContact(_)
             | mechanics::Error::NoStressField { .. } => "/shear_strength",
@@ -262,6 +267,7 @@ pub fn follow<S: Solver>(
 /// [`Cause::Refused`] without a stress field, [`Cause::Interrupted`] if the client hung up.
 pub fn stresses<S: Solver>(solver: &S, sampling: &StressRequest, stop: &dyn Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
+    solver.exact().check_elastic("`stress`").map_err(|error| Failure::at("/stress", error))?;
     let (places, line) = sampled(solver.exact(), sampling, solver.state().contact_radius, "/stress")?;
     let at_once = solver.radii_at_once();
     let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
@@ -322,6 +328,7 @@ fn check_search(profile: &Profile, depth: usize, stop: &dyn Stop) -> Result<(), 
 /// [`Failure`] if the slip history is so deep that the search would exceed the time limit, or the client hung up.
 pub fn residual<S: Solver>(solver: &S, stop: &dyn Stop) -> Result<Residual, Failure> {
     needs_stress_field(solver.exact(), "/residual")?;
+    solver.exact().check_elastic("`residual`").map_err(|error| Failure::at("/residual", error))?;
     check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => {

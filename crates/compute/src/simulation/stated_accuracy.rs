@@ -41,12 +41,15 @@ pub fn coupling_bound(contact: &Contact) -> Option<Option<f64>> {
 pub fn accuracy<S: Solver>(solver: &S, timer: Timer<'_>, reason: &str) -> Accuracy {
     let estimate = solver.accuracy(&|| timer.stop.check().is_ok());
     let assumed = assumption(solver.exact().profile()).map(|(_, assumed)| format!("; {assumed}"));
+    let (count, steps) = solver.exact().count_and_steps().unzip();
     Accuracy {
-        solver: S::KIND,
+        solver: if count.is_some() { SolverKind::Springs } else { S::KIND },
         reason: format!("{reason}{}", assumed.unwrap_or_default()),
         force_error: estimate.force_error,
         stress_error: estimate.stress_error,
         coupling_bound: coupling_bound(solver.exact()),
+        count,
+        steps,
         compute_time: timer.elapsed().as_secs_f64(),
         ..Accuracy::default()
     }

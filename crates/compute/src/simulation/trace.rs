@@ -129,7 +129,7 @@ impl Way<'_> {
         let mut copy = solver.clone();
         self.stop.check()?;
         // A target on the way may be out of range, such as a force of 1e-300 N; then there is no point.
-        if copy.apply(&self.part(middle), self.tolerance, &|| self.stop.check().is_ok()).is_err() {
+        if copy.apply(&self.part(begin, middle), self.tolerance, &|| self.stop.check().is_ok()).is_err() {
             return Ok(self.stop.check()?);
         }
         let between = point(&copy.state());
@@ -146,8 +146,8 @@ impl Way<'_> {
         Ok(())
     }
 
-    /// The move to a part of its targets.
-    fn part(&self, part: f64) -> Move {
+    /// The move from a part of its targets to another.
+    fn part(&self, begin: f64, part: f64) -> Move {
         let towards = |from: f64, to: f64| from + part * if self.step.relative { to } else { to - from };
         let State { displacement, force, indentation, normal_force, .. } = self.state;
         Move {
@@ -160,6 +160,7 @@ impl Way<'_> {
                 Normal::NormalForce(to) => Normal::NormalForce(towards(normal_force, to)),
             }),
             relative: false,
+            duration: (part - begin) * self.step.duration,
         }
     }
 }

@@ -150,6 +150,13 @@ pub fn bulk_warning(added: bool) -> Option<Warning> {
     added.then(|| Warning::new("bulk_shift_neglected", message))
 }
 
+/// The warning for springs with memory that have left what the half-space is for, unless they had before.
+pub fn annulus_warning(before: bool, contact: &Contact) -> Option<Warning> {
+    let message = "the contact was other than a disc, or slip other than an outer annulus of one sign: from then on \
+                   the springs are an approximation whose error is not stated";
+    (contact.beyond_annulus() && !before).then(|| Warning::new("beyond_annulus", message))
+}
+
 /// The warnings for a contact at another radius, m, and indentation, m. `excess_error` is the estimated error of the
 /// force, if it is beyond the tolerance.
 pub fn warnings_at(

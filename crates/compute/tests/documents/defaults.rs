@@ -10,7 +10,7 @@ use crate::json::{ball, changed, cylinder, of, timeless, with};
 use crate::{good, post};
 
 /// Members whose default is no value that could be written out, or that no computation has.
-const OTHERS: [(&str, &str); 20] = [
+const OTHERS: [(&str, &str); 22] = [
     ("Axis.name", "the pointer, in a table"),
     ("Input.name", "the pointer, which is no name"),
     ("CreateRequest.shear_strength", "of a stored contact, as that of a simulation"),
@@ -23,6 +23,8 @@ const OTHERS: [(&str, &str); 20] = [
     ("ForkRequest.sequence", "of a stored contact"),
     ("FrequencyResponse.frequencies", "about the frequency of small oscillations"),
     ("MeasuredLoop.start", "`steady`, but with a warning"),
+    ("Move.duration", "of a stored contact, as that of a simulation"),
+    ("MoveRequest.duration", "of a stored contact, as that of a simulation"),
     ("MoveRequest.tolerance", "of a stored contact, as that of a simulation"),
     ("PathRequest.tolerance", "of a stored contact, as that of a simulation"),
     ("ProtocolRequest.contact", "the one that `start` names"),
@@ -67,6 +69,7 @@ fn simulations() -> Vec<Case> {
         ("SimulateRequest.solver", plain(), "/solver", json!("exact")),
         ("SimulateRequest.steps", plain(), "/steps", json!("all")),
         ("SimulateRequest.residual", plain(), "/residual", json!(false)),
+        ("SimulatedMove.duration", plain(), "/path/moves/0/duration", json!(0.0)),
         ("SimulatedMove.relative", plain(), "/path/moves/0/relative", json!(false)),
         ("StressRequest.fields", plain(), "/stress/fields", json!(["pressure", "shear"])),
         ("CyclicPath.mean", on_ball, "/path/cycles/mean", json!(0.0)),

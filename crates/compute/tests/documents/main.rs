@@ -26,6 +26,7 @@ mod subsurface;
 mod sweeps;
 mod tables;
 mod uncertain_inputs;
+mod viscoelastic;
 mod warnings;
 mod wear;
 mod where_parts_meet;

@@ -27,9 +27,13 @@ impl CycleLog {
         log
     }
 
-    /// Looks at the next state; returns the outermost of the cycles that it closes.
+    /// Looks at the next state; returns the outermost of the cycles that it closes. Bodies with memory close none: they
+    /// come back to a displacement in another state.
     pub fn push(&mut self, sequence: u64, state: &State) -> Option<ClosedCycle> {
         self.sequence = sequence;
+        if state.time.is_some() {
+            return None;
+        }
         let (newest, dropped, most) = (&mut self.newest, &mut self.dropped, self.most);
         let mut outermost = None;
         self.scan.push(sequence, state, |cycle| {

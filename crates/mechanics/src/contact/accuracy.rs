@@ -45,6 +45,10 @@ impl Contact {
         if let Some(contact) = self.tangential() {
             return contact.accuracy();
         }
+        if let Some(bodies) = &self.viscoelastic {
+            let (path_error, force_error) = (bodies.path_error, bodies.force_error + bodies.path_error);
+            return ErrorEstimate { path_error, force_error, stress_error: 0.0 };
+        }
         // Without a load there is nothing to err; with one, an error that is not known is the largest number.
         let pressed = self.normal_force() > 0.0;
         let known = |value: f64| if pressed && !value.is_nan() { value.min(f64::MAX) } else { 0.0 };

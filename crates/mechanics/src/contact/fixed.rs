@@ -39,11 +39,9 @@ impl Contact {
     /// Energy that is lost with a turning point counts as friction work. What slipped in the last move is not kept.
     ///
     /// # Errors
-    /// [`Error::ShearStrength`] for a contact with a shear strength.
+    /// [`Error::ShearStrength`] for a contact with a shear strength, [`Error::Viscoelastic`] for bodies with memory.
     pub fn packed_fixed(&self, turning_points: usize) -> Result<(Vec<f64>, bool), Error> {
-        if self.shear_strength() > 0.0 {
-            return Err(Error::ShearStrength("a history of bounded size"));
-        }
+        self.check_coulomb("a history of bounded size")?;
         let bounded = self.history.bounded(&Coulomb(&self.indenter), turning_points);
         let scale = self.scale();
         let lost = 2.0 * self.elasticity.g_star() * scale * scale * bounded.lost.unwrap_or(0.0);
@@ -64,7 +62,7 @@ impl Contact {
         let (turning_points, none) = pairs.split_at(count);
         let finite = numbers.iter().all(|number| number.is_finite());
         let sound = finite && dissipated >= 0.0 && none.as_flattened().iter().all(|number| number.abs() <= 0.0);
-        if !sound || self.strength.is_some() || self.check_indentation(indentation).is_err() {
+        if !sound || self.check_coulomb("").is_err() || self.check_indentation(indentation).is_err() {
             return None;
         }
         range::DISPLACEMENT.check(displacement).ok()?;

@@ -9,13 +9,14 @@ mod results;
 mod shear_strength;
 pub(crate) mod state;
 mod stiffness;
+mod viscoelastic;
 
 use std::sync::Arc;
 
 use crate::slip_history::SlipHistory;
 use normal::Preload;
 use shear_strength::ShearStrength;
-use state::{Friction, Setup};
+use state::{Friction, Law, Setup};
 
 use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
@@ -24,6 +25,7 @@ use crate::profile::Profile;
 use crate::range;
 use crate::range::error::Error;
 use crate::slip_history::limit::Coulomb;
+use crate::viscoelastic::Viscoelastic;
 
 /// A frictional contact, solved exactly.
 ///
@@ -65,6 +67,8 @@ pub struct Contact {
     pub(crate) inverse_scale: DoubleDouble,
     /// None for Coulomb's law.
     pub(crate) strength: Option<ShearStrength>,
+    /// None for elastic bodies.
+    pub(crate) viscoelastic: Option<Box<Viscoelastic>>,
 }
 
 impl Contact {
@@ -74,7 +78,7 @@ impl Contact {
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
     /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an
     /// ellipsoid and bodies that are unknown; [`Error::LineContact`] and [`Error::NoStressField`] for a shear strength
-    /// of a contact that is not round.
+    /// of a contact that is not round, and for bodies with memory likewise.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -87,9 +91,9 @@ impl Contact {
     /// assert_eq!(Contact::new(mild)?.contact_radius(), Contact::new(rough)?.contact_radius());
     /// # Ok::<(), Error>(())
     /// ```
-    pub fn new<P: Into<Arc<Profile>>, F: Into<Friction>>(setup: Setup<P, F>) -> Result<Contact, Error> {
+    pub fn new<P: Into<Arc<Profile>>, F: Into<Law>>(setup: Setup<P, F>) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup.shared();
-        let Friction { coefficient: friction, shear_strength } = friction.into();
+        let Law { limit: Friction { coefficient: friction, shear_strength }, memory } = friction.into();
         let elasticity = match &*profile {
             Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
             Profile::Line(_) => elasticity.along_line(),
@@ -141,8 +145,9 @@ impl Contact {
             path_kernel: 0.0,
             inverse_scale,
             strength: None,
+            viscoelastic: None,
         };
-        contact.with_shear_strength(shear_strength)
+        contact.with_shear_strength(shear_strength)?.with_memory(memory)
     }
 
     /// The same contact at its preload, before its first move.
@@ -161,7 +166,8 @@ impl Contact {
     /// The same definition, displacement and load, without pieces of the slip history.
     pub(crate) fn clone_without_history(&self) -> Contact {
         let (indenter, strength) = (Arc::clone(&self.indenter), self.strength.clone());
-        Contact { indenter, history: SlipHistory::default(), strength, ..*self }
+        let viscoelastic = self.viscoelastic.clone();
+        Contact { indenter, history: SlipHistory::default(), strength, viscoelastic, ..*self }
     }
 
     /// Becomes a copy of `other`, a contact of the same definition, in the memory that it has: without a new allocation
@@ -195,6 +201,7 @@ impl Contact {
             ..self.clone_without_history()
         };
         contact.renew_tangential();
+        contact.renew_memory();
         contact
     }
 

@@ -9,7 +9,8 @@
 //! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
 //! | the rest | the slip history, see `slip_history/packed.rs`; of a contact with a shear strength (8) this and the |
-//! | | indentation (two parts) come before that of its tangential problem |
+//! | | indentation (two parts) come before that of its tangential problem; of bodies with memory their springs are in |
+//! | | its place |
 
 use super::Contact;
 use crate::numerics::packing::{Packed, Reader};
@@ -55,10 +56,12 @@ impl Contact {
     #[must_use]
     pub fn packed_length(&self) -> usize {
         let history = match &self.strength {
+            None if self.viscoelastic.is_some() => 0,
             Some(_) => 3 * size_of::<f64>() + self.tangential().map_or(0, |contact| contact.history.packed_length()),
             None => self.history.packed_length(),
         };
-        2 * size_of::<u16>() + 11 * size_of::<f64>() + history
+        let bodies = self.viscoelastic.as_ref().map_or(0, |bodies| bodies.packed_length());
+        2 * size_of::<u16>() + 11 * size_of::<f64>() + history + bodies
     }
 
     /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another
@@ -79,7 +82,10 @@ impl Contact {
                 self.history.edge().level.pack(&mut bytes);
                 strength.tangential.iter().for_each(|contact| contact.history.pack(&mut bytes));
             }
-            None => self.history.pack(&mut bytes),
+            None => match &self.viscoelastic {
+                Some(bodies_with_memory) => bodies_with_memory.pack(&mut bytes),
+                None => self.history.pack(&mut bytes),
+            },
         }
         bytes
     }
@@ -108,6 +114,14 @@ impl Contact {
         contact.dissipated = Packed::unpack(&mut reader)?;
         // The error of a stress may be without bound.
         (contact.path_error, contact.path_kernel) = (reader.any()?, reader.any()?);
+        if let Some(bodies) = &self.viscoelastic {
+            let bodies = bodies.unpack(&mut reader, &self.indenter)?;
+            contact.viscoelastic = Some(Box::new(bodies));
+            let normal_force = contact.normal_force;
+            contact.take_up_memory();
+            contact.normal_force = normal_force;
+            return Some(contact);
+        }
         if self.strength.is_none() {
             contact.history = Packed::unpack(&mut reader)?;
             return Some(contact);

@@ -67,6 +67,9 @@ impl Contact {
         if let Some(contact) = self.tangential() {
             return contact.force();
         }
+        if let Some(bodies) = &self.viscoelastic {
+            return bodies.forces(&self.material())[1];
+        }
         2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
     }
 
@@ -149,7 +152,10 @@ impl Contact {
     /// [`Contact::stiffness_radius`].
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
-        self.indenter.edge_radius(self.history.edge())
+        match &self.viscoelastic {
+            Some(bodies) => bodies.radius(&self.indenter),
+            None => self.indenter.edge_radius(self.history.edge()),
+        }
     }
 
     /// F_N'/(2 E*), m, the contact radius of the round contact that is as stiff: a where the contact is round.
@@ -187,6 +193,7 @@ impl Contact {
     pub fn memory_bytes(&self) -> usize {
         let own = size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes();
         own + self.tangential().map_or(0, Contact::memory_bytes)
+            + self.viscoelastic.as_ref().map_or(0, |bodies| bodies.heap_bytes())
     }
 
     /// The summary at the present normal load.
@@ -233,6 +240,9 @@ impl Contact {
     pub fn state(&self) -> State {
         #[cfg(test)]
         crate::cells::call_count::add(|calls| &mut calls.states);
+        if let Some(bodies) = &self.viscoelastic {
+            return self.state_with_memory(bodies);
+        }
         let edge = self.history.edge();
         let scale = self.scale();
         let (stick_radius, regime) = self.stick();
@@ -263,6 +273,8 @@ impl Contact {
             memory_depth: self.memory_depth(),
             electrical_conductance: conductance.electrical,
             thermal_conductance: conductance.thermal,
+            time: None,
+            viscous_work: None,
         };
         State { stick_centre: self.stick_centre(&state), ..state }
     }

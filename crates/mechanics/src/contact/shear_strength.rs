@@ -52,10 +52,10 @@ impl Contact {
         self.strength.as_ref().map_or(0.0, |strength| strength.value)
     }
 
-    /// Refuses what is defined for Coulomb's law alone, by its name.
+    /// Refuses what is defined for elastic bodies and Coulomb's law alone, by its name.
     ///
     /// # Errors
-    /// [`Error::ShearStrength`].
+    /// [`Error::ShearStrength`] and [`Error::Viscoelastic`].
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -63,6 +63,7 @@ impl Contact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn check_coulomb(&self, what: &'static str) -> Result<(), Error> {
+        self.check_elastic(what)?;
         if self.strength.is_some() { Err(Error::ShearStrength(what)) } else { Ok(()) }
     }
 
@@ -113,6 +114,7 @@ impl Contact {
                 path_kernel: 0.0,
                 inverse_scale: DoubleDouble::from(1.0),
                 strength: None,
+                viscoelastic: None,
             })
         });
         self.strength = Some(ShearStrength { tangential, ..*strength });

@@ -6,6 +6,7 @@ use super::normal::Preload;
 use crate::elasticity::Elasticity;
 use crate::profile::Profile;
 use crate::range::error::Error;
+use crate::viscoelastic::Prony;
 
 /// The definition of a contact. Its profile is a [`Profile`], or an `Arc` of one that others share, because a table is
 /// large.
@@ -15,7 +16,7 @@ pub struct Setup<P = Profile, F = f64> {
     pub profile: P,
     /// The reduced moduli.
     pub elasticity: Elasticity,
-    /// Coulomb's coefficient of friction mu, or a [`Friction`].
+    /// Coulomb's coefficient of friction mu, a [`Friction`], or a [`Law`].
     pub friction: F,
     /// The normal load that the virgin contact starts with.
     pub preload: Preload,
@@ -30,31 +31,55 @@ pub struct Friction {
     pub shear_strength: f64,
 }
 
+/// What a contact obeys beside linear elasticity: the limit of its shear stress, and the memory of its bodies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    /// The limit of the shear stress.
+    pub limit: Friction,
+    /// How the moduli of the bodies relax; none for elastic bodies.
+    pub memory: Option<Arc<Prony>>,
+}
+
+impl From<Friction> for Law {
+    fn from(friction: Friction) -> Law {
+        Law { limit: friction, memory: None }
+    }
+}
+
+impl From<f64> for Law {
+    fn from(coefficient: f64) -> Law {
+        Friction::from(coefficient).into()
+    }
+}
+
 impl From<f64> for Friction {
     fn from(coefficient: f64) -> Friction {
         Friction { coefficient, shear_strength: 0.0 }
     }
 }
 
-impl<P> Setup<P, Friction> {
-    /// The same with Coulomb's law alone, for what knows no other; `what` names it.
+impl<P> Setup<P, Law> {
+    /// The same with elastic bodies and Coulomb's law alone, for what knows no other; `what` names it.
     ///
     /// # Errors
-    /// [`Error::ShearStrength`] if there is a shear strength.
+    /// [`Error::ShearStrength`] if there is a shear strength, [`Error::Viscoelastic`] if the bodies have memory.
     ///
     /// ```
-    /// use stickslip_mechanics::{Elasticity, Friction, Preload, Setup, Sphere};
+    /// use stickslip_mechanics::{Elasticity, Friction, Law, Preload, Setup, Sphere};
     ///
     /// let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
-    /// let friction = Friction { coefficient: 0.3, shear_strength: 1e6 };
+    /// let friction = Law::from(Friction { coefficient: 0.3, shear_strength: 1e6 });
     /// let setup = Setup { profile: Sphere::new(0.01)?, elasticity, friction, preload: Preload::NormalForce(10.0) };
     /// let refused = setup.clone().coulomb("wear").unwrap_err();
     /// assert_eq!(refused.to_string(), "wear is not available with a shear strength");
-    /// assert!(Setup { friction: Friction::from(0.3), ..setup }.coulomb("wear").is_ok());
+    /// assert!(Setup { friction: Law::from(0.3), ..setup }.coulomb("wear").is_ok());
     /// # Ok::<(), stickslip_mechanics::Error>(())
     /// ```
     pub fn coulomb(self, what: &'static str) -> Result<Setup<P>, Error> {
-        let Setup { profile, elasticity, friction, preload } = self;
+        let Setup { profile, elasticity, friction: Law { limit: friction, memory }, preload } = self;
+        if memory.is_some() {
+            return Err(Error::Viscoelastic(what));
+        }
         if friction.shear_strength > 0.0 {
             return Err(Error::ShearStrength(what));
         }
@@ -80,6 +105,8 @@ pub struct Move {
     pub normal: Option<Normal>,
     /// Whether the numbers are increments.
     pub relative: bool,
+    /// How long it takes, s, at an even pace. Zero is at once, as all that is elastic is.
+    pub duration: f64,
 }
 
 /// A tangential target.
@@ -143,4 +170,8 @@ pub struct State {
     pub electrical_conductance: Option<f64>,
     /// Thermal conductance, W/K, if the conductivity of both bodies is known.
     pub thermal_conductance: Option<f64>,
+    /// Time since the preload, s, if the bodies have memory.
+    pub time: Option<f64>,
+    /// Work of the tangential force that the bodies have dissipated since the start, J, if they have memory.
+    pub viscous_work: Option<f64>,
 }

@@ -29,7 +29,8 @@ impl Contact {
             return Ok((normal, 0.0));
         }
         let mut moved = self.clone();
-        moved.apply(&Move { tangential: Some(Tangential::Displacement(probe)), normal: None, relative: true })?;
+        let tangential = Some(Tangential::Displacement(probe));
+        moved.apply(&Move { tangential, relative: true, ..Move::default() })?;
         Ok((normal, 2.0 * self.elasticity.g_star() * moved.state().stick_radius))
     }
 }

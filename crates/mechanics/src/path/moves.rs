@@ -41,7 +41,7 @@ impl Contact {
     /// ```
     #[doc = include_str!("../example.txt")]
     /// let force = Some(Tangential::Force(1000.0));
-    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
+    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), ..Move::default() };
     /// contact.apply_within(&oblique, 1e-6)?;
     /// assert!((contact.force() - 1000.0).abs() < 1e-9 && contact.path_error() <= 1e-6);
     /// // Friction holds no more than mu F_N = 4 kN.
@@ -61,7 +61,7 @@ impl Contact {
     /// ```
     #[doc = include_str!("../example.txt")]
     /// let force = Some(Tangential::Force(1000.0));
-    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), relative: false };
+    /// let oblique = Move { tangential: force, normal: Some(Normal::NormalForce(8000.0)), ..Move::default() };
     /// assert_eq!(contact.apply_while(&oblique, 1e-6, &|| false), Err(Error::Interrupted));
     /// assert_eq!(contact.force(), 0.0);
     /// # Ok::<(), Error>(())
@@ -79,6 +79,14 @@ impl Contact {
         keep_going: &dyn Fn() -> bool,
         visit: &mut dyn FnMut(f64, &Contact),
     ) -> Result<(), Error> {
+        if self.viscoelastic.is_some() {
+            self.apply_with_memory(step, tolerance, keep_going)?;
+            visit(1.0, self);
+            return Ok(());
+        }
+        if step.duration > 0.0 {
+            return Err(Error::NoMemory);
+        }
         let normal = self.normal_path(step)?;
         if self.shear_strength() > 0.0 {
             self.apply_with_strength(step, &normal)?;
@@ -173,7 +181,7 @@ impl Contact {
     }
 
     /// The move, with absolute targets, to the fraction `part` (0 to 1) of `step`. It is straight in the same
-    /// quantities: a sequence of such moves with rising fractions follows the same line.
+    /// quantities: a sequence of such moves with rising fractions follows the same line. It takes no time.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -194,6 +202,7 @@ impl Contact {
                 Normal::NormalForce(to) => Normal::NormalForce(towards(self.normal_force(), to)),
             }),
             relative: false,
+            duration: 0.0,
         }
     }
 

@@ -69,6 +69,15 @@ pub enum Error {
     /// What knows Coulomb's law alone.
     #[error("{0} is not available with a shear strength")]
     ShearStrength(&'static str),
+    /// What knows elastic bodies alone.
+    #[error("{0} is not available for bodies with memory (`prony`)")]
+    Viscoelastic(&'static str),
+    /// A fluid that is held under a load for some time, in which it flows.
+    #[error("the ratios of `prony` add up to 1: such a body flows under a load, so prescribe the indentation in time")]
+    FluidUnderLoad,
+    /// A move that takes time, of elastic bodies.
+    #[error("a move takes time only where the bodies have memory: leave `duration` out, or give the contact `prony`")]
+    NoMemory,
     /// Places along x where there are radii alone.
     #[error("{0} is available for line contacts only")]
     RoundContact(&'static str),

@@ -120,6 +120,11 @@ quantities! {
     SpringCount = "count", SPRING_COUNT: 2.0 to 1e6 "", "How many springs the foundation may have.";
     RingTolerance = "tolerance", RING_TOLERANCE: 1e-300 to 1e300 "",
         "What the error of a path by rings is to stay below, over mu F_N.";
+    PronyTerms = "number of terms", PRONY_TERMS: 1.0 to 16.0 "", "How many terms a Prony series may have.";
+    PronyRatio = "ratio", PRONY_RATIO: 1e-9 to 1.0 "",
+        "By how much of the instantaneous modulus a term of a Prony series relaxes.";
+    PronyTime = "time", PRONY_TIME: 1e-12 to 1e15 "s", "The relaxation time of a term of a Prony series.";
+    Duration = "duration", DURATION: 0.0 to 1e15 "s", "How long a move takes.";
     Turns = "turns", TURNS: -1e9 to 1e9 "", "A place on an ellipse, in turns from its beginning.";
     Sliders = "count", "How many sliders stand for a contact.";
     SliderError = "error", "The error of a set of sliders, of the force or of the work of a cycle.";

@@ -131,7 +131,7 @@ fn along(step: &PlanarMove, [x, y]: Vector) -> Move {
         PlanarTarget::Force(to) => Tangential::Force(to[0] * x + to[1] * y),
         PlanarTarget::Arc(arc) => Tangential::Displacement(arc.at(1.0)[0] * x + arc.at(1.0)[1] * y),
     });
-    Move { tangential, normal: step.normal, relative: step.relative }
+    Move { tangential, normal: step.normal, relative: step.relative, duration: 0.0 }
 }
 
 /// Follows a path from the virgin contact, while `keep_going` returns true, which is asked at every step.
@@ -223,7 +223,7 @@ impl<'a> Scene<'a> {
         let mut pressed = contact.clone();
         for (index, step) in moves.iter().enumerate() {
             if step.normal.is_some() {
-                let normal = Move { tangential: None, normal: step.normal, relative: step.relative };
+                let normal = Move { tangential: None, normal: step.normal, relative: step.relative, duration: 0.0 };
                 pressed.apply(&normal).map_err(|error| Refusal { index: Some(index), error })?;
             }
             loads.push(load(&pressed, matches!(step.normal, Some(Normal::NormalForce(_)))));

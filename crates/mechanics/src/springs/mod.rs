@@ -346,6 +346,8 @@ impl Springs {
             memory_depth: self.in_contact().count(),
             electrical_conductance: conductance.electrical,
             thermal_conductance: conductance.thermal,
+            time: None,
+            viscous_work: None,
         }
     }
 }

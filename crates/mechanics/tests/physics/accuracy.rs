@@ -90,7 +90,7 @@ fn random_contact(random: &mut Random) -> Contact {
         let normal = Normal::Indentation(figures.indentation * random.within(0.7, 1.3));
         let tangential = Tangential::Displacement(figures.gross_slip_displacement * random.within(-0.8, 0.8));
         let load = random.bits().is_multiple_of(2);
-        let step = Move { tangential: Some(tangential), normal: load.then_some(normal), relative: false };
+        let step = Move { tangential: Some(tangential), normal: load.then_some(normal), ..Move::default() };
         contact.apply(&step).unwrap();
     }
     contact
@@ -112,7 +112,7 @@ fn random_curve(random: &mut Random, contact: &Contact) -> Move {
     } else {
         Tangential::Force(figures.gross_slip_force * random.within(-0.25, 0.25))
     };
-    Move { tangential: Some(tangential), normal: Some(normal), relative: false }
+    Move { tangential: Some(tangential), normal: Some(normal), ..Move::default() }
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn chords_from_the_tip_of_a_cone_leave_an_error_of_the_stress() {
     let curve = Move {
         tangential: Some(Tangential::Displacement(0.5 * full)),
         normal: Some(Normal::NormalForce(load)),
-        relative: false,
+        ..Move::default()
     };
     let (mut coarse, mut fine) = (lifted.clone(), lifted);
     coarse.apply_within(&curve, 1e-3).unwrap();

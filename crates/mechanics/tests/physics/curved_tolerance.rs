@@ -209,7 +209,7 @@ proptest! {
         let force = 0.9 * share * 2.0 * FRICTION * E_STAR * rise * contact.contact_radius();
         let tolerance = 10_f64.powf(-digits);
         let step = Move { tangential: Some(Tangential::Force(force)), normal: Some(Normal::Indentation(indentation)),
-            relative: false };
+            ..Move::default() };
         contact.apply_within(&step, tolerance).unwrap();
         // dU = dF/(2 G* a), F is straight in d, and a goes with d^(1/n).
         let power = 1.0 - exponent.recip();

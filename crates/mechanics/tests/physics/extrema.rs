@@ -215,7 +215,7 @@ fn no_extremum_on_any_profile_is_missed_or_made_up() {
             let depth = depth * (0.6 + 0.5 * load);
             let normal = oblique.then_some(Normal::Indentation(depth));
             contact
-                .apply(&Move { normal, tangential: Some(Tangential::Displacement(target * full)), relative: false })
+                .apply(&Move { normal, tangential: Some(Tangential::Displacement(target * full)), ..Move::default() })
                 .unwrap();
             notes.push(contact.state().stick_radius);
             notes.push(contact.contact_radius());

@@ -20,7 +20,7 @@ fn moved(random: &mut Random) -> Contact {
     for _ in 0..(random.within(1.0, 30.0) as usize) {
         let tangential = Some(Tangential::Displacement(random.within(-1.2, 1.2) * slide));
         let normal = (random.within(0.0, 3.0) < 1.0).then(|| Normal::NormalForce(random.within(0.2, 1.5) * load));
-        contact.apply_within(&Move { tangential, normal, relative: false }, 1e-4).unwrap();
+        contact.apply_within(&Move { tangential, normal, ..Move::default() }, 1e-4).unwrap();
     }
     contact
 }
@@ -35,7 +35,7 @@ fn a_curved_move_that_is_interrupted_at_any_chord_leaves_the_contact_as_it_was_t
         let step = Move {
             tangential: Some(Tangential::Force(random.within(-0.9, 0.9) * limit.min(contact.friction() * load))),
             normal: Some(Normal::NormalForce(load)),
-            relative: false,
+            ..Move::default()
         };
         let mut whole = contact.clone();
         if whole.apply_within(&step, 1e-4).is_err() {
@@ -115,6 +115,6 @@ fn a_load_that_is_carried_already_is_no_change_of_it() {
         (Tangential::Force(-0.1 * contact.friction() * contact.normal_force()), contact.normal_force());
     contact.apply(&Move { tangential: Some(target), ..Move::default() }).unwrap();
     let normal = Some(Normal::NormalForce(load));
-    same.apply(&Move { tangential: Some(target), normal, relative: false }).unwrap();
+    same.apply(&Move { tangential: Some(target), normal, ..Move::default() }).unwrap();
     assert_eq!(same.pack(), contact.pack());
 }

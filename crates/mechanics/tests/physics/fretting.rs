@@ -263,7 +263,7 @@ fn moves_straight_in_a_force_are_followed_by_their_chords() {
     let to = |tangential: f64, normal: f64| Move {
         tangential: Some(Tangential::Force(tangential * force)),
         normal: Some(Normal::NormalForce(normal * force)),
-        relative: false,
+        ..Move::default()
     };
     let moves = [to(0.3, 1.0), to(-0.2, 0.7), push(-0.25 * force), to(0.0, 1.0)];
     let cycle = Cycle::new(&contact, &moves, &|| true).unwrap();

@@ -103,7 +103,7 @@ fn oblique(random: &mut fastrand::Rng, contact: &Contact, largest: f64) -> Move 
     let least = contact.normal_force().min(load);
     let share = (1.8 * random.f64() - 0.9) * contact.friction();
     let force = (share * load).clamp(-0.95 * contact.friction() * least, 0.95 * contact.friction() * least);
-    Move { tangential: Some(Tangential::Force(force)), normal: Some(Normal::NormalForce(load)), relative: false }
+    Move { tangential: Some(Tangential::Force(force)), normal: Some(Normal::NormalForce(load)), ..Move::default() }
 }
 
 /// int of a function over a stretch by the double exponential rule, which roots at both ends do not disturb.
@@ -591,7 +591,7 @@ fn boundary_elements_have_the_same_shear_after_oblique_strokes_and_bulk_stress()
             let tangential = Some(Tangential::Force(share * limit));
             let normal = ((load - before.1).abs() > 0.0).then_some(Normal::NormalForce(500.0 * load));
             before = (share, load);
-            exact.apply(&Move { tangential, normal, relative: false }).unwrap();
+            exact.apply(&Move { tangential, normal, ..Move::default() }).unwrap();
             let errors: Vec<f64> =
                 elements.places.iter().zip(&elements.shear).map(|(x, q)| (exact.shear(*x) - q).abs() / unit).collect();
             let mean = errors.iter().sum::<f64>() / errors.len() as f64;

@@ -50,7 +50,7 @@ fn one_asperity_is_a_ball() {
         Move {
             normal: Some(Normal::NormalForce(9.0)),
             tangential: Some(Tangential::Displacement(-1e-7)),
-            relative: false,
+            ..Move::default()
         },
     ];
     for preload in [Preload::NormalForce(10.0), Preload::Indentation(2e-6), Preload::ContactRadius(1.6e-4)] {
@@ -351,7 +351,7 @@ fn curved_moves_of_asperities_meet_their_tolerance() {
     let step = Move {
         normal: Some(Normal::NormalForce(1.4 * limit)),
         tangential: Some(Tangential::Displacement(1.5e-7)),
-        relative: false,
+        ..Move::default()
     };
     let mut fine = rough.clone();
     rough.apply(&step).unwrap();

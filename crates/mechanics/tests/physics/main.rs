@@ -54,5 +54,6 @@ mod sums_of_tables;
 mod support;
 mod tables;
 mod thin_annuli;
+mod viscoelastic;
 mod wear;
 mod where_parts_meet;

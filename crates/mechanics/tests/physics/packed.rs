@@ -62,7 +62,7 @@ fn any_move(virgin: &Contact, random: &mut Random) -> (Move, f64) {
         _ => None,
     };
     let tolerance = 10_f64.powf(random.within(-7.0, -4.0));
-    (Move { tangential, normal, relative: random.within(0.0, 8.0) < 1.0 }, tolerance)
+    (Move { tangential, normal, relative: random.within(0.0, 8.0) < 1.0, duration: 0.0 }, tolerance)
 }
 
 /// Makes moves; those that are refused change nothing.
@@ -214,7 +214,7 @@ fn digest() -> u64 {
             let depth = DEPTH * random.within(if index % 20 == 0 { -0.1 } else { 0.5 }, 1.5);
             let normal = (index % 3 == 0).then_some(Normal::Indentation(depth));
             // Where friction cannot hold the force the contact stays where it is.
-            let _ = contact.apply_within(&Move { tangential: Some(tangential), normal, relative: false }, 1e-6);
+            let _ = contact.apply_within(&Move { tangential: Some(tangential), normal, ..Move::default() }, 1e-6);
             let state = contact.state();
             let stress = contact.shear(0.5 * state.contact_radius);
             for value in [state.force, state.stick_radius, state.dissipated_energy, state.elastic_energy, stress] {

@@ -61,7 +61,7 @@ fn at_a_constant_load_steps_along_a_line_are_those_of_the_exact_law() {
         for _ in 0..40 {
             let along = random.within(-1.2, 1.2) * full;
             let tangential = Some(Tangential::Displacement(along));
-            exact.apply(&Move { tangential, normal: None, relative: false }).unwrap();
+            exact.apply(&Move { tangential, normal: None, ..Move::default() }).unwrap();
             let state = steps.to(depth, [along * x, along * y]);
             errors[0] = errors[0].max(distance(state.force, [exact.force() * x, exact.force() * y]) / unit);
             let work = state.dissipated_energy - exact.state().dissipated_energy;
@@ -86,7 +86,7 @@ fn impacts_along_a_line_come_near_to_the_exact_law_as_rings_and_steps_are_refine
             let depth = if index == count { -0.01 } else { (PI * time).sin() };
             let along = 0.5 * (1.7 * TAU * time).sin();
             let tangential = Some(Tangential::Displacement(along));
-            exact.apply(&Move { tangential, normal: Some(Normal::Indentation(depth)), relative: false }).unwrap();
+            exact.apply(&Move { tangential, normal: Some(Normal::Indentation(depth)), ..Move::default() }).unwrap();
             let state = steps.to(depth, [0.8 * along, 0.6 * along]);
             let error = distance(state.force, [0.8 * exact.force(), 0.6 * exact.force()]);
             worst[0] = worst[0].max(error / UNIT.force_limit(1.0));

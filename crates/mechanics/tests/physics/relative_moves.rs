@@ -21,7 +21,7 @@ fn pair(tangential: Option<bool>, normal: Option<bool>, from: &State) -> (Move, 
             false => Normal::Indentation(base[2] + sink),
             true => Normal::NormalForce(base[3] + load),
         }),
-        relative: false,
+        ..Move::default()
     };
     let increments = Move { relative: true, ..towards([0.0; 4]) };
     (increments, towards([from.displacement, from.force, from.indentation, from.normal_force]))

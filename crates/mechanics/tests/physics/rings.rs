@@ -100,7 +100,7 @@ fn along_a_line_rings_have_the_forces_of_the_exact_law() {
         let mut errors = Vec::new();
         for (index, (along, normal)) in path.into_iter().enumerate() {
             let tangential = Some(Tangential::Displacement(along));
-            exact.apply(&Move { tangential, normal: normal.map(Normal::Indentation), relative: false }).unwrap();
+            exact.apply(&Move { tangential, normal: normal.map(Normal::Indentation), ..Move::default() }).unwrap();
             largest = largest.max(exact.normal_force());
             let expected = [exact.force() * x, exact.force() * y];
             let found = rings.states[index].force;

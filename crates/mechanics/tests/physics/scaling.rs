@@ -59,7 +59,7 @@ fn answers(profile: Profile, depth: f64, scale: f64, (slip, limit): (f64, f64)) 
     let curved = Move {
         tangential: Some(Tangential::Force(0.3 * force)),
         normal: Some(Normal::Indentation(1.2 * depth)),
-        relative: false,
+        ..Move::default()
     };
     let moves =
         [displace(0.7 * slip), push(-0.4 * force), oblique(1.1 * depth, 0.2 * slip), curved, displace(-0.1 * slip)];

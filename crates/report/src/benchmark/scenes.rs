@@ -107,7 +107,7 @@ impl Scene {
         self.path.iter().scan(DEPTH, |before, &(depth, displacement)| {
             let normal = (depth.to_bits() != before.to_bits()).then_some(Normal::Indentation(depth));
             *before = depth;
-            Some(Move { tangential: Some(Tangential::Displacement(displacement)), normal, relative: false })
+            Some(Move { tangential: Some(Tangential::Displacement(displacement)), normal, ..Move::default() })
         })
     }
 }

@@ -147,7 +147,7 @@ fn impact(count: usize, steps: usize) -> Result<String, Error> {
     let (mut error, mut work) = (0.0_f64, 0.0);
     for ((depth, along), state) in path.zip(states) {
         let tangential = Some(Tangential::Displacement(along));
-        exact.apply(&Move { tangential, normal: Some(Normal::Indentation(depth)), relative: false })?;
+        exact.apply(&Move { tangential, normal: Some(Normal::Indentation(depth)), ..Move::default() })?;
         error = error.max(distance(state.force, [0.6 * exact.force(), 0.8 * exact.force()]));
         work = state.dissipated_energy / exact.state().dissipated_energy - 1.0;
     }

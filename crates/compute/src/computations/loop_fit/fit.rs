@@ -159,6 +159,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
         shear_strength: definition.shear_strength,
         preload: definition.preload,
         bulk: definition.bulk,
+        prony: None,
     }
 }
 

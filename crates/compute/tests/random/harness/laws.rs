@@ -115,7 +115,7 @@ fn numbers(simulation: &Simulation, reply: &SimulateReply) {
             // The largest pressure is zero where the ring around a flat is too thin for twice the digits of a double.
             ["residual", "relative"] => {
                 let unpressed = reply.contact.max_pressure.is_some_and(|pressure| pressure <= 0.0);
-                spiked(edge) || untouched(reply) || unpressed || simulation.setup.friction.coefficient <= 0.0
+                spiked(edge) || untouched(reply) || unpressed || simulation.setup.friction.limit.coefficient <= 0.0
             }
             ["stress", "slip", index] => radius(reply, index) > edge || untouched(reply),
             ["subsurface", _, index] => {
@@ -162,7 +162,7 @@ fn find_nulls(value: &Value, place: String, found: &mut Vec<String>) {
 
 /// The bounds of each state; the friction work never decreases.
 fn states(simulation: &Simulation, reply: &SimulateReply) {
-    let friction = simulation.setup.friction.coefficient;
+    let friction = simulation.setup.friction.limit.coefficient;
     let mut dissipated = 0.0;
     for (index, state) in reply.steps.iter().enumerate() {
         let limit = friction * state.normal_force;
@@ -261,7 +261,7 @@ fn targets(request: &SimulateRequest, reply: &SimulateReply) {
 fn stress_unit(simulation: &Simulation, reply: &SimulateReply) -> f64 {
     let end = &reply.steps[reply.steps.len() - 1];
     let mean = end.normal_force / (std::f64::consts::PI * end.contact_radius * end.contact_radius);
-    if end.normal_force > 0.0 { simulation.setup.friction.coefficient * mean } else { 0.0 }
+    if end.normal_force > 0.0 { simulation.setup.friction.limit.coefficient * mean } else { 0.0 }
 }
 
 /// Friction bounds the shear stress everywhere, and stresses outside the contact are zero.
@@ -284,7 +284,7 @@ fn stresses(simulation: &Simulation, reply: &SimulateReply) {
         if let (Some(pressure), Some(shear)) = (pressure, shear)
             && !springs(reply)
         {
-            let bound = simulation.setup.friction.coefficient * pressure;
+            let bound = simulation.setup.friction.limit.coefficient * pressure;
             let unit = stress_unit(simulation, reply) + bound;
             let allowed = (STRESS + 4.0 * reply.accuracy.stress_error) * unit;
             assert!(shear.abs() <= bound + allowed, "at {radius} m: shear {shear:e} beyond mu p = {bound:e}");
@@ -325,6 +325,7 @@ fn repeat_last_move(request: &SimulateRequest, reply: &SimulateReply) {
         indentation: still(last.indentation),
         normal_force: still(last.normal_force),
         relative: last.relative,
+        ..Move::default()
     });
     let request = SimulateRequest { path: Path::Moves(path).into(), ..request.clone() };
     let longer = match run(&request) {

@@ -96,7 +96,7 @@ fn step(contact: &Contact, draw: &mut Draw<'_>) -> Move {
         13..15 => (slide(draw), press(draw)),
         _ => (push(draw), press(draw)),
     };
-    Move { tangential, normal, relative: false }
+    Move { tangential, normal, ..Move::default() }
 }
 
 /// What a law is asked of.

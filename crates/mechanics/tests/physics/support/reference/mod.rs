@@ -129,7 +129,7 @@ fn row(scene: &mut Scene, fields: &[&str]) {
                 "N" => Some(Normal::NormalForce(number(n))),
                 other => panic!("{other}"),
             };
-            let step = Move { tangential, normal, relative: kind == "rel" };
+            let step = Move { tangential, normal, relative: kind == "rel", ..Move::default() };
             scene.steps.push(Step::Move(step));
         }
         ["nested", count, step] => {
@@ -183,7 +183,12 @@ impl Scene {
 impl Step {
     fn carry_out(&self, contact: &mut Contact, tolerance: f64) -> Result<(), Error> {
         let mut slide = |target: f64, relative: bool| {
-            contact.apply(&Move { tangential: Some(Tangential::Displacement(target)), normal: None, relative })
+            contact.apply(&Move {
+                tangential: Some(Tangential::Displacement(target)),
+                normal: None,
+                relative,
+                ..Move::default()
+            })
         };
         match *self {
             Step::Move(step) => contact.apply_within(&step, tolerance)?,

@@ -1,0 +1,314 @@
+//! The relaxation of a body: R(t) = 1 - sum g_i (1 - exp(-t/T_i)), and how a spring with it moves.
+//!
+//! A spring of instantaneous stiffness 1 carries p = w - sum g_i v_i under the deflection w, and each v_i follows w:
+//! v_i' = (w - v_i)/T_i. So s = sum g_i v_i is the deflection that it would keep if it were let go at once. While w is
+//! straight in time the v_i are known exactly, and so they are while the spring is free (w = s), when they decay in as
+//! many modes as there are terms: the retardation times of the same material. The matrix of these is made symmetric by
+//! the scale sqrt(g_i T_i), and a mode of the rate k is v_i ~ 1/(1 - k T_i) with 1 = sum g_i/(1 - k T_i).
+
+use crate::range;
+use crate::range::Quantity;
+use crate::range::error::Error;
+
+/// The most terms of a series.
+pub const MOST_TERMS: usize = 16;
+/// Times closer together than this are one, relative: the error is of the square of it.
+const SAME_TIME: f64 = 1e-4;
+/// x = t/T below which means over a time are summed as series.
+const SHORT: f64 = 1e-3;
+
+/// One term of a Prony series.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PronyTerm {
+    /// By how much of the instantaneous modulus it relaxes, a pure number.
+    pub ratio: f64,
+    /// Its relaxation time, s.
+    pub time: f64,
+}
+
+/// A Prony series: how the moduli of the bodies relax from their instantaneous values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prony {
+    /// From the shortest time on, no two the same.
+    terms: Vec<PronyTerm>,
+    modes: Vec<Mode>,
+}
+
+/// A mode in which a free spring relaxes.
+#[derive(Clone, Debug, PartialEq)]
+struct Mode {
+    /// 1/s; zero for the flow of a fluid.
+    rate: f64,
+    /// From the v_i to its amplitude, and back.
+    of: [f64; MOST_TERMS],
+    to: [f64; MOST_TERMS],
+}
+
+/// How springs move in a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kernel {
+    /// exp(-t/T_i), and its mean over the time.
+    decay: [f64; MOST_TERMS],
+    mean: [f64; MOST_TERMS],
+    /// What is left of each mode.
+    free: [f64; MOST_TERMS],
+    /// The change of p for a change of w that comes evenly over the time.
+    pub(super) slope: f64,
+    time: f64,
+}
+
+/// ```
+/// use stickslip_mechanics::{Prony, PronyTerm};
+///
+/// let rubber = Prony::new(&[PronyTerm { ratio: 0.5, time: 1.0 }, PronyTerm { ratio: 0.2, time: 0.1 }])?;
+/// assert!((rubber.relaxed() - 0.3).abs() < 1e-15 && !rubber.is_fluid());
+/// assert!((rubber.relaxation(0.1) - (0.3 + 0.5 * (-0.1_f64).exp() + 0.2 * (-1.0_f64).exp())).abs() < 1e-15);
+/// assert!(Prony::new(&[PronyTerm { ratio: 1.1, time: 1.0 }]).is_err() && Prony::new(&[]).is_err());
+/// # Ok::<(), stickslip_mechanics::Error>(())
+/// ```
+impl Prony {
+    /// A series of 1 to [`MOST_TERMS`] terms, whose ratios add up to 1 at most.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`] by [`range::PRONY_RATIO`] and [`range::PRONY_TIME`], for the number of terms, and for the
+    /// sum of the ratios.
+    pub fn new(terms: &[PronyTerm]) -> Result<Prony, Error> {
+        range::PRONY_TERMS.check(terms.len() as f64)?;
+        let mut sorted = Vec::with_capacity(terms.len());
+        for term in terms {
+            range::PRONY_RATIO.check(term.ratio)?;
+            range::PRONY_TIME.check(term.time)?;
+            sorted.push(*term);
+        }
+        let sum: f64 = terms.iter().map(|term| term.ratio).sum();
+        if sum > 1.0 + 1e-12 {
+            let allowed = "a sum of at most 1 over all terms".to_owned();
+            return Err(Error::OutOfRange { quantity: Quantity::PronyRatio, value: sum, allowed });
+        }
+        sorted.sort_by(|one, other| one.time.total_cmp(&other.time));
+        let mut terms: Vec<PronyTerm> = Vec::with_capacity(sorted.len());
+        for term in sorted {
+            match terms.last_mut() {
+                Some(last) if term.time - last.time <= SAME_TIME * last.time => {
+                    let ratio = last.ratio + term.ratio;
+                    last.time = (last.ratio * last.time + term.ratio * term.time) / ratio;
+                    last.ratio = ratio;
+                }
+                _ => terms.push(term),
+            }
+        }
+        let modes = (0..terms.len()).map(|index| mode(&terms, index)).collect();
+        Ok(Prony { terms, modes })
+    }
+
+    /// Its terms, from the shortest time on.
+    #[must_use]
+    pub fn terms(&self) -> &[PronyTerm] {
+        &self.terms
+    }
+
+    /// The relaxed modulus over the instantaneous one.
+    #[must_use]
+    pub fn relaxed(&self) -> f64 {
+        let left = 1.0 - self.terms.iter().map(|term| term.ratio).sum::<f64>();
+        if left < 1e-12 { 0.0 } else { left }
+    }
+
+    /// Whether it relaxes to nothing, so that it flows under a load.
+    #[must_use]
+    pub fn is_fluid(&self) -> bool {
+        self.relaxed() <= 0.0
+    }
+
+    /// R(t), the modulus after a time, s, over the instantaneous one.
+    #[must_use]
+    pub fn relaxation(&self, time: f64) -> f64 {
+        self.relaxed() + self.terms.iter().map(|term| term.ratio * (-time / term.time).exp()).sum::<f64>()
+    }
+
+    pub(super) fn kernel(&self, time: f64) -> Kernel {
+        let mut kernel =
+            Kernel { decay: [1.0; MOST_TERMS], mean: [1.0; MOST_TERMS], free: [1.0; MOST_TERMS], slope: 1.0, time };
+        if time <= 0.0 {
+            return kernel;
+        }
+        for (index, (term, mode)) in self.terms.iter().zip(&self.modes).enumerate() {
+            let x = time / term.time;
+            kernel.decay[index] = (-x).exp();
+            kernel.mean[index] = -(-x).exp_m1() / x;
+            kernel.free[index] = (-mode.rate * time).exp();
+            kernel.slope -= term.ratio * (1.0 - kernel.mean[index]);
+        }
+        kernel
+    }
+
+    /// s, the deflection that the spring would keep if it were let go.
+    pub(super) fn kept(&self, v: &[f64]) -> f64 {
+        self.terms.iter().zip(v).map(|(term, v)| term.ratio * v).sum()
+    }
+
+    /// Moves along a straight line from one deflection to another.
+    pub(super) fn press(&self, kernel: &Kernel, v: &mut [f64], [from, to]: [f64; 2]) {
+        for (index, v) in v.iter_mut().enumerate() {
+            *v = to - (to - from) * kernel.mean[index] - kernel.decay[index] * (from - *v);
+        }
+    }
+
+    /// p after that, without the move.
+    pub(super) fn pressed(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
+        let follow = |(index, (term, v)): (usize, (&PronyTerm, &f64))| {
+            term.ratio * (to - (to - from) * kernel.mean[index] - kernel.decay[index] * (from - v))
+        };
+        to - self.terms.iter().zip(v).enumerate().map(follow).sum::<f64>()
+    }
+
+    /// The mean of p over that time.
+    pub(super) fn mean_of_p(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
+        let middle = 0.5 * (from + to);
+        let follow = |(index, (term, v)): (usize, (&PronyTerm, &f64))| {
+            let x = kernel.time / term.time;
+            let late = if x < SHORT { 0.5 - x / 6.0 + x * x / 24.0 } else { (1.0 - kernel.mean[index]) / x };
+            term.ratio * (middle - (to - from) * late - (from - v) * kernel.mean[index])
+        };
+        middle - self.terms.iter().zip(v).enumerate().map(follow).sum::<f64>()
+    }
+
+    /// Relaxes without a load.
+    pub(super) fn relax(&self, kernel: &Kernel, v: &mut [f64]) {
+        let mut amplitudes = [0.0; MOST_TERMS];
+        for (amplitude, mode) in amplitudes.iter_mut().zip(&self.modes) {
+            *amplitude = mode.of.iter().zip(&*v).map(|(of, v)| of * v).sum();
+        }
+        v.fill(0.0);
+        for ((mode, amplitude), left) in self.modes.iter().zip(amplitudes).zip(kernel.free) {
+            v.iter_mut().zip(&mode.to).for_each(|(v, to)| *v += to * left * amplitude);
+        }
+    }
+
+    /// Twice the energy of a spring: w^2 without the share of the terms, and that of each.
+    pub(super) fn energy(&self, v: &[f64], w: f64) -> f64 {
+        let terms = self.terms.iter().zip(v).map(|(term, v)| term.ratio * (w - v) * (w - v));
+        self.relaxed() * w * w + terms.sum::<f64>()
+    }
+
+    /// The shortest and the longest of its times, s.
+    pub(super) fn times(&self) -> [f64; 2] {
+        [self.terms[0].time, self.terms[self.terms.len() - 1].time]
+    }
+}
+
+/// The mode whose retardation time is the next above the time of a term.
+fn mode(terms: &[PronyTerm], index: usize) -> Mode {
+    let (pole, next) = (terms[index].time, terms.get(index + 1).map(|term| term.time));
+    // In D = retardation time - T_index, so that the distance from the pole keeps its digits.
+    let excess = |distance: f64| {
+        let tau = pole + distance;
+        1.0 - terms.iter().map(|term| term.ratio * tau / ((pole - term.time) + distance)).sum::<f64>()
+    };
+    let left = 1.0 - terms.iter().map(|term| term.ratio).sum::<f64>();
+    let endless = next.is_none() && left < 1e-12;
+    let [mut low, mut high] = [0.0, next.map_or(f64::MAX, |next| next - pole)];
+    if next.is_none() && !endless {
+        // 1 - sum g tau/(tau - T) rises to 1 - sum g.
+        high = pole;
+        while excess(high) < 0.0 && high < 1e300 {
+            high *= 2.0;
+        }
+    }
+    if !endless {
+        for _ in 0..2000 {
+            let middle = if low > 0.0 && high / low > 4.0 { (low * high).sqrt() } else { 0.5 * (low + high) };
+            if middle <= low || middle >= high {
+                break;
+            }
+            // It falls to minus infinity towards the pole, and rises from term to term.
+            if excess(middle) < 0.0 { low = middle } else { high = middle }
+        }
+    }
+    let distance = 0.5 * (low + high);
+    let rate = if endless { 0.0 } else { (pole + distance).recip() };
+    let (mut of, mut to, mut square) = ([0.0; MOST_TERMS], [0.0; MOST_TERMS], 0.0);
+    for (place, term) in terms.iter().enumerate() {
+        // 1 - T_i/tau
+        let apart = if endless { 1.0 } else { ((pole - term.time) + distance) * rate };
+        let scale = (term.ratio * term.time).sqrt();
+        let component = scale / apart;
+        square += component * component;
+        (of[place], to[place]) = (component * scale, component / scale);
+    }
+    of.iter_mut().for_each(|of| *of /= square);
+    Mode { rate, of, to }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A free spring by small steps of its equations.
+    fn by_steps(prony: &Prony, mut v: Vec<f64>, time: f64) -> Vec<f64> {
+        let count = 20_000;
+        let step = time / f64::from(count);
+        let rate = |v: &[f64]| -> Vec<f64> {
+            let kept = prony.kept(v);
+            v.iter().zip(prony.terms()).map(|(v, term)| (kept - v) / term.time).collect()
+        };
+        for _ in 0..count {
+            let first = rate(&v);
+            let middle: Vec<f64> = v.iter().zip(&first).map(|(v, rate)| v + 0.5 * step * rate).collect();
+            v.iter_mut().zip(rate(&middle)).for_each(|(v, rate)| *v += step * rate);
+        }
+        v
+    }
+
+    #[test]
+    fn a_free_spring_relaxes_in_the_modes_of_its_equations() {
+        let mut random = fastrand::Rng::with_seed(7);
+        for case in 0..40 {
+            let count = 1 + case % 6;
+            let mut left = if case % 5 == 0 { 1.0 } else { 0.95 };
+            let terms: Vec<PronyTerm> = (0..count)
+                .map(|index| {
+                    let ratio = if index + 1 == count && case % 5 == 0 { left } else { left * random.f64().max(1e-3) };
+                    left -= ratio;
+                    PronyTerm { ratio: ratio.max(1e-9), time: 10.0_f64.powf(-1.0 + 2.0 * random.f64()) }
+                })
+                .collect();
+            let prony = Prony::new(&terms).unwrap();
+            let start: Vec<f64> = prony.terms().iter().map(|_| random.f64() - 0.3).collect();
+            let mut still = start.clone();
+            prony.relax(&prony.kernel(0.0), &mut still);
+            let time = 2.0 * random.f64();
+            let mut relaxed = start.clone();
+            prony.relax(&prony.kernel(time), &mut relaxed);
+            let expected = by_steps(&prony, start.clone(), time);
+            for (index, start) in start.iter().enumerate() {
+                assert!((still[index] - start).abs() < 1e-11, "{case}: {} {start}", still[index]);
+                assert!((relaxed[index] - expected[index]).abs() < 1e-5, "{case}: {relaxed:?} {expected:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_straight_path_is_followed_exactly_however_it_is_cut() {
+        let terms = [(0.3, 1e-3), (0.2, 0.1), (0.25, 2.0), (0.1, 300.0)];
+        let prony = Prony::new(&terms.map(|(ratio, time)| PronyTerm { ratio, time })).unwrap();
+        let (mut whole, mut cut) = (vec![0.0; 4], vec![0.0; 4]);
+        let kernel = prony.kernel(0.7);
+        let foretold = prony.pressed(&kernel, &whole, [0.2, 1.3]);
+        let mean = prony.mean_of_p(&kernel, &whole, [0.2, 1.3]);
+        prony.press(&kernel, &mut whole, [0.2, 1.3]);
+        let mut sum = 0.0;
+        for step in 0..700 {
+            let at = |step: i32| 0.2 + 1.1 * f64::from(step) / 700.0;
+            let kernel = prony.kernel(1e-3);
+            sum += prony.mean_of_p(&kernel, &cut, [at(step), at(step + 1)]) / 700.0;
+            prony.press(&kernel, &mut cut, [at(step), at(step + 1)]);
+        }
+        assert!(whole.iter().zip(&cut).all(|(one, other)| (one - other).abs() < 1e-12), "{whole:?} {cut:?}");
+        assert!((foretold - (1.3 - prony.kept(&whole))).abs() < 1e-14 && (mean - sum).abs() < 1e-12, "{mean} {sum}");
+        // From rest by a jump: p = R(t).
+        let mut held = vec![0.0; 4];
+        prony.press(&prony.kernel(0.7), &mut held, [1.0, 1.0]);
+        assert!((1.0 - prony.kept(&held) - prony.relaxation(0.7)).abs() < 1e-14);
+    }
+}
