@@ -15,5 +15,6 @@ mod printed;
 mod progress;
 mod python;
 mod reference;
+mod reference_suite;
 mod system_service;
 mod version;

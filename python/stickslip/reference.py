@@ -1,0 +1,446 @@
+"""Runs the reference problems on codes, and prints errors and times.
+
+    python -m stickslip.reference run --code cli                  # the program stickslip on the path
+    python -m stickslip.reference run --code package --code springs --markdown table.md --picture table.svg
+    python -m stickslip.reference run --code service=http://localhost:8080 --below 1e-10
+
+The problems are the documents of the folder `reference` of the repository (`--problems FOLDER` elsewhere). A code is a
+function that takes the name of a problem and the inputs of a case, and gives its outputs by name, or raises `Unstated`
+if it has no words for the problem: its cell then stays empty. To try your own code, call `run` with such a function.
+
+Beside NumPy nothing is needed; this file runs alone, too (`python reference.py run --code cli=PROGRAM`), and draws the
+picture if matplotlib is installed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import time
+import urllib.request
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+Document = dict[str, Any]
+#: A code: the name of a problem and the inputs of a case in, outputs by name out.
+Code = Callable[[str, Document], Document]
+#: What stickslip computes: the name of a computation and its request in, the reply out.
+Compute = Callable[[str, Document], Document]
+
+
+class Unstated(Exception):
+    """The code cannot state this problem."""
+
+
+# ------------------------------------------------------------------------------------------------------ stickslip
+
+
+def effective(inputs: Document) -> Document:
+    """The contact of a problem with moduli of the pair."""
+    e_star = inputs["e_star"]
+    contact = {
+        "profile": inputs.get("profile") or {"type": "sphere", "radius": inputs["radius"]},
+        "material": {"effective": {"e_star": e_star, "g_star": inputs.get("g_star", e_star)}},
+        "friction": inputs.get("friction", 0.3),
+    }
+    if contact["profile"]["type"] == "ellipsoid":
+        # The axis of a motion that does not take place, and a body of this modulus.
+        contact["profile"] = {**contact["profile"], "direction": "x"}
+        contact["material"] = {"bodies": [{"youngs_modulus": e_star, "poisson_ratio": 0.0}, "rigid"]}
+    load = "normal_force" if "normal_force" in inputs else "indentation"
+    return {**contact, "preload": {load: inputs[load]}}
+
+
+def steps(reply: Document, *names: str) -> Document:
+    """Columns of the states after each move."""
+    return {name: [step[name] for step in reply["steps"]] for name in names}
+
+
+def stickslip(compute: Compute) -> Code:
+    """The problems as requests of stickslip, however it is called."""
+
+    def simulate(contact: Document, **rest: Any) -> Document:
+        return compute("simulate", {"contact": contact, **rest})
+
+    def normal_contact(inputs: Document) -> Document:
+        radii = inputs.get("radii")
+        asked = {"stress": {"radii": radii, "fields": ["pressure"]}} if radii else {}
+        reply = simulate(effective(inputs), path={"displacement": [0.0]}, **asked)
+        found = steps(reply, "contact_radius", "indentation")
+        return {**found, "pressure": reply["stress"]["pressure"]} if radii else {"indentation": found["indentation"]}
+
+    def first_loading(inputs: Document) -> Document:
+        reply = simulate(effective(inputs), path={"force": inputs["forces"]}, stress={"radii": inputs["radii"]})
+        return {**steps(reply, "displacement", "stick_radius"), "shear": reply["stress"]["shear"]}
+
+    def oblique_paths(inputs: Document) -> Document:
+        moves = [{"indentation": d, "displacement": u} for d, u in inputs["moves"]]
+        return steps(simulate(effective(inputs), path={"moves": moves}), "normal_force", "force")
+
+    def displaced(inputs: Document) -> Document:
+        contact = effective(inputs)
+        if "shear_strength" in inputs:
+            contact["shear_strength"] = inputs["shear_strength"]
+        return steps(simulate(contact, path={"displacement": inputs["displacements"]}), "force")
+
+    def falling_amplitude(inputs: Document) -> Document:
+        path, stress = {"displacement": inputs["displacements"]}, {"radii": inputs["radii"]}
+        reply = simulate(effective(inputs), path=path, stress=stress, residual=True, steps="last")
+        largest = [reply["residual"]["max"]]
+        return {**steps(reply, "force"), "shear": reply["stress"]["shear"], "largest_shear": largest}
+
+    def cycles(inputs: Document) -> list[Document]:
+        kind = "force" if "force_amplitudes" in inputs else "displacement"
+        drive = {kind: inputs[f"{kind}_amplitudes"]}
+        request = {"contact": effective(inputs), "drive": drive, "harmonics": 3}
+        found: list[Document] = compute("cycle", request)["cycles"]
+        return found
+
+    def loops(inputs: Document) -> Document:
+        names = ("dissipated_energy", "displacement_amplitude", "force_amplitude")
+        found = cycles(inputs)
+        return {name: [cycle[name] for cycle in found] for name in names}
+
+    def harmonics(inputs: Document) -> Document:
+        found = cycles(inputs)
+        parts = [(order, part) for order in (1, 3) for part in ("in_phase", "quadrature")]
+        return {
+            f"{part}_{order}": [
+                next(one[part] for one in cycle["harmonics"] if one["order"] == order) for cycle in found
+            ]
+            for order, part in parts
+        }
+
+    def line_contact(inputs: Document) -> Document:
+        body = {name: inputs[name] for name in ("youngs_modulus", "poisson_ratio")}
+        contact = {
+            "profile": {"type": "cylinder", "radius": inputs["radius"], "length": inputs["length"]},
+            "material": {"bodies": [body, body]},
+            "friction": inputs["friction"],
+            "preload": {"normal_force": inputs["normal_force"]},
+            "bulk": {"body": "second", "stress_per_force": inputs["stress_per_force"]},
+        }
+        below = {"body": "second", "points": inputs["points"]}
+        reply = simulate(contact, path={"force": inputs["forces"]}, stress={"x": inputs["x"]}, subsurface=below)
+        tensor = {name: reply["subsurface"][name] for name in ("xx", "yy", "zz", "xz")}
+        width = [reply["steps"][-1]["contact_radius"]]
+        return {"contact_half_width": width, "shear": reply["stress"]["shear"], **tensor}
+
+    def pad(inputs: Document) -> Document:
+        names = ("flat_half_width", "edge_radius", "length")
+        contact = effective({**inputs, "profile": {"type": "rounded_pad", **{name: inputs[name] for name in names}}})
+        reply = simulate(contact, path={"displacement": [0.0]}, stress={"x": inputs["x"], "fields": ["pressure"]})
+        return {"contact_half_width": steps(reply, "contact_radius")["contact_radius"], **reply["stress"]}
+
+    def stress_in_depth(inputs: Document) -> Document:
+        below = {"body": "second", "points": inputs["points"], "poisson_ratio": inputs["poisson_ratio"]}
+        below["fields"] = ["tensor", "von_mises"]
+        path = {"displacement": inputs["displacements"]}
+        found: Document = simulate(effective(inputs), path=path, subsurface=below)["subsurface"]
+        return found
+
+    def wear_limit(inputs: Document) -> Document:
+        drive = {"displacement": inputs["displacement_amplitude"]}
+        reply = compute("wear", {"contact": effective(inputs), "drive": drive, "hold": "indentation"})
+        numbers = {name: [reply[name]] for name in ("stick_radius", "worn_radius", "force_amplitude", "removed_volume")}
+        return {**numbers, "normal_force": [reply["normal_force"]["after"]]}
+
+    def conductance(inputs: Document) -> Document:
+        contact = {
+            "profile": {"type": "sphere", "radius": inputs["radius"]},
+            "material": {"bodies": [inputs["body"], inputs["body"]]},
+            "friction": 0.3,
+            "preload": {"normal_force": inputs["normal_forces"][0]},
+        }
+        reply = simulate(contact, path={"moves": [{"normal_force": load} for load in inputs["normal_forces"]]})
+        return steps(reply, "electrical_conductance", "thermal_conductance")
+
+    def sliders(inputs: Document) -> Document:
+        reply = compute("sliders", {"contact": effective(inputs), "count": inputs["count"]})
+        return {**reply, "force_error": [reply["force_error"]]}
+
+    def rolling(inputs: Document) -> Document:
+        profile = {"type": "cylinder", "radius": inputs["radius"], "length": inputs["length"]}
+        contact = effective({**inputs, "profile": profile})
+        replies = [compute("rolling", {"contact": contact, "ratio": ratio}) for ratio in inputs["ratios"]]
+        widths = [reply["stick"][1] - reply["stick"][0] for reply in replies]
+        return {"creep": [reply["creep"] for reply in replies], "stick_width": widths}
+
+    problems: dict[str, Callable[[Document], Document]] = {
+        "normal-contact": normal_contact,
+        "first-loading": first_loading,
+        "oblique-paths": oblique_paths,
+        "random-turns": displaced,
+        "falling-amplitude": falling_amplitude,
+        "loops": loops,
+        "harmonics": harmonics,
+        "line-contact": line_contact,
+        "pad": pad,
+        "stress-in-depth": stress_in_depth,
+        "wear-limit": wear_limit,
+        "shear-strength": displaced,
+        "conductance": conductance,
+        "sliders": sliders,
+        "rolling": rolling,
+    }
+
+    def code(problem: str, inputs: Document) -> Document:
+        if problem not in problems:
+            raise Unstated(problem)
+        return problems[problem](inputs)
+
+    return code
+
+
+def by_program(program: str) -> Compute:
+    """The command line."""
+
+    def compute(name: str, request: Document) -> Document:
+        run = subprocess.run([program, name, "-", "--json"], input=json.dumps(request), capture_output=True, text=True)
+        if run.returncode:
+            raise RuntimeError(run.stderr or run.stdout)
+        reply: Document = json.loads(run.stdout)
+        return reply
+
+    return compute
+
+
+def by_service(base: str) -> Compute:
+    """A running service; `STICKSLIP_KEY` is its key, if it wants one."""
+
+    def compute(name: str, request: Document) -> Document:
+        headers = {"content-type": "application/json"}
+        if "STICKSLIP_KEY" in os.environ:
+            headers["authorization"] = "Bearer " + os.environ["STICKSLIP_KEY"]
+        call = urllib.request.Request(f"{base.rstrip('/')}/{name}", json.dumps(request).encode(), headers)
+        with urllib.request.urlopen(call) as response:
+            reply: Document = json.load(response)
+        return reply
+
+    return compute
+
+
+def by_package() -> Compute:
+    """The package, in this process."""
+    from stickslip import Local
+
+    local = Local()
+
+    def compute(name: str, request: Document) -> Document:
+        reply: Document = local.compute(name, request)
+        return reply
+
+    return compute
+
+
+# --------------------------------------------------------------------------------------------------------- others
+
+
+def moves_of(problem: str, inputs: Document) -> tuple[float, list[tuple[float, float]]]:
+    """The indentation at the start, and pairs of indentation and displacement: of a ball on a path of displacements."""
+    if problem not in ("oblique-paths", "random-turns", "falling-amplitude"):
+        raise Unstated(problem)
+    if "moves" in inputs:
+        return inputs["indentation"], [(d, u) for d, u in inputs["moves"]]
+    e_star, radius = inputs["e_star"], inputs["radius"]
+    start = (3 * inputs["normal_force"] / (4 * e_star * radius**0.5)) ** (2 / 3)
+    return start, [(start, u) for u in inputs["displacements"]]
+
+
+def springs(count: int = 10_000) -> Code:
+    """Springs of the method of dimensionality reduction, clamped after each move (Kraft & Pohrt 2016, corrected)."""
+
+    def code(problem: str, inputs: Document) -> Document:
+        start, moves = moves_of(problem, inputs)
+        e_star, g_star, mu, radius = (inputs[name] for name in ("e_star", "g_star", "friction", "radius"))
+        m, widest = mu * e_star / g_star, max([start, *(d for d, _ in moves)])
+        width = (widest * radius) ** 0.5 / count
+        level = ((np.arange(count) + 0.5) * width) ** 2 / radius
+        w, before, depth = np.zeros(count), 0.0, start
+        loads, forces = [], []
+        for d, u in moves:
+            # A spring that is met on the way moves with the rest of it.
+            part = np.where(level > depth, np.clip((d - level) / (d - depth), 0, 1), 1.0) if d > depth else 1.0
+            room = np.maximum(d - level, 0)
+            w = np.clip(w + (u - before) / m * part, -room, room)
+            before, depth = u, d
+            loads.append(float(2 * e_star * room.sum() * width))
+            forces.append(float(2 * g_star * m * w.sum() * width))
+        found = {"normal_force": loads, "force": forces}
+        if problem != "falling-amplitude":
+            return found
+        # Displacements are straight between the springs: an arcosh for each.
+        x = np.append(np.append(0.0, (np.arange(count) + 0.5) * width), count * width)
+        values = m * np.append(np.append(w[0], w), 0.0)
+        slopes = np.diff(values) / np.diff(x)
+        shear = []
+        for r in inputs["radii"]:
+            # At the centre the integral of slope/x is that from the first spring on.
+            reach = np.arccosh(np.maximum(x / r, 1)) if r > 0 else np.log(np.maximum(x, x[1]))
+            shear.append(float(-g_star / np.pi * (slopes * np.diff(reach)).sum()))
+        return {"force": forces[-1:], "shear": shear}
+
+    return code
+
+
+def capped_spring(problem: str, inputs: Document) -> Document:
+    """One spring with the tangent stiffness 2 G* a and the cap mu F_N, the law of many particle codes."""
+    start, moves = moves_of(problem, inputs)
+    e_star, g_star, mu, radius = (inputs[name] for name in ("e_star", "g_star", "friction", "radius"))
+    force, before, depth = 0.0, 0.0, start
+    loads, forces = [], []
+    for target, displacement in moves:
+        # In a hundred steps, as a particle code would.
+        for part in np.linspace(0, 1, 101)[1:]:
+            d, u = depth + (target - depth) * part, (displacement - before) * 0.01
+            limit = mu * 4 / 3 * e_star * radius**0.5 * d**1.5
+            force = float(np.clip(force + 2 * g_star * (radius * d) ** 0.5 * u, -limit, limit))
+        before, depth = displacement, target
+        loads.append(4 / 3 * e_star * radius**0.5 * target**1.5)
+        forces.append(force)
+    return {"normal_force": loads, "force": forces} if problem != "falling-amplitude" else {"force": forces[-1:]}
+
+
+def code_named(name: str) -> Code:
+    """A code by its name on the command line: `name` or `name=where`."""
+    kind, _, where = name.partition("=")
+    if kind == "cli":
+        return stickslip(by_program(where or "stickslip"))
+    if kind == "service":
+        return stickslip(by_service(where or "http://localhost:8080"))
+    if kind == "package":
+        return stickslip(by_package())
+    if kind == "springs":
+        return springs(int(where or 10_000))
+    if kind == "capped-spring":
+        return capped_spring
+    raise SystemExit(f"{name} is no code; codes are cli, service, package, springs, capped-spring")
+
+
+# ---------------------------------------------------------------------------------------------------------- running
+
+
+def read_problems(folder: Path) -> list[Document]:
+    """The documents of a folder, sorted by name."""
+    documents = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(folder.glob("*.json"))]
+    if not documents:
+        raise SystemExit(f"there are no problems in {folder}: name their folder by --problems")
+    return documents
+
+
+def error_of(expected: Document, found: list[float | None]) -> float:
+    """The largest difference from the values of an output, over its scale."""
+    if len(found) != len(expected["values"]) or any(value is None for value in found):
+        return float("inf")
+    return float(np.abs(np.array(found, dtype=float) - expected["values"]).max() / expected["scale"])
+
+
+def run(code: Code, problems: list[Document]) -> Iterator[tuple[str, float, float] | tuple[str, None, None]]:
+    """Name, largest error over the outputs that the code gives, and time in s; None for what it cannot state.
+
+    Outputs that a code leaves out are not counted against it, but it must give one of each case.
+    """
+    for problem in problems:
+        worst, seconds = 0.0, 0.0
+        try:
+            for case in problem["cases"]:
+                begin = time.perf_counter()
+                found = code(problem["id"], case["inputs"])
+                seconds += time.perf_counter() - begin
+                named = [name for name in case["outputs"] if name in found]
+                if not named:
+                    raise Unstated(problem["id"])
+                worst = max(worst, *(error_of(case["outputs"][name], found[name]) for name in named))
+        except Unstated:
+            yield problem["id"], None, None
+        else:
+            yield problem["id"], worst, seconds
+
+
+def missing(code: Code, problems: list[Document]) -> list[str]:
+    """Outputs that a code leaves out, as `problem: output`."""
+    left = []
+    for problem in problems:
+        for case in problem["cases"]:
+            try:
+                found = code(problem["id"], case["inputs"])
+            except Unstated:
+                found = {}
+            left += [f"{problem['id']}: {name}" for name in case["outputs"] if name not in found]
+    return left
+
+
+Table = dict[str, dict[str, tuple[float, float]]]
+
+
+def markdown(table: Table, problems: list[Document]) -> str:
+    """Errors and times, a row for each problem; empty where a code cannot state it."""
+    lines = ["| problem | " + " | ".join(table) + " |", "|---" * (len(table) + 1) + "|"]
+    for problem in problems:
+        cells = [table[code].get(problem["id"]) for code in table]
+        shown = ["" if cell is None else f"{cell[0]:.1e}, {1e3 * cell[1]:.3g} ms" for cell in cells]
+        lines.append(f"| {problem['id']} | " + " | ".join(shown) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def picture(table: Table, path: str) -> None:
+    """Errors over times, a mark for each problem and a colour for each code."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    figure, axes = pyplot.subplots(figsize=(7, 4.5), layout="constrained")
+    for code, row in table.items():
+        errors = [max(error, 1e-17) for error, _ in row.values()]
+        axes.loglog([seconds for _, seconds in row.values()], errors, "o", label=code)
+    axes.set(xlabel="time of all cases of a problem (s)", ylabel="largest error")
+    axes.legend()
+    figure.savefig(path)
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """The command line."""
+    parser = argparse.ArgumentParser(prog="python -m stickslip.reference", description="Runs the reference problems.")
+    parser.add_argument("command", choices=["run"])
+    parser.add_argument("--code", action="append", required=True, help="cli[=PROGRAM], service[=URL], package, …")
+    parser.add_argument("--problems", type=Path, default=Path("reference"), help="the folder of the documents")
+    parser.add_argument("--markdown", help="a file for the table")
+    parser.add_argument("--picture", help="a file for the picture, svg or png; needs matplotlib")
+    parser.add_argument("--below", type=float, help="fail if an error is not below this, or anything is missing")
+    asked = parser.parse_args(arguments)
+    problems = read_problems(asked.problems)
+    table: Table = {}
+    bad = []
+    for name in asked.code:
+        code, row = code_named(name), {}
+        for problem, error, seconds in run(code, problems):
+            if error is not None and seconds is not None:
+                row[problem] = (error, seconds)
+            if asked.below is not None and (error is None or not error < asked.below):
+                bad.append(f"{name}, {problem}: error {error}")
+        if asked.below is not None:
+            bad += [f"{name}, {left} is missing" for left in missing(code, problems)]
+        table[name.partition("=")[0]] = row
+    printed = markdown(table, problems)
+    versions = ", ".join(sorted({problem["version"] for problem in problems}))
+    print(f"reference problems {versions}; Python {platform.python_version()}, NumPy {np.__version__}\n")
+    print(printed, end="")
+    if asked.markdown:
+        Path(asked.markdown).write_text(printed, encoding="utf-8")
+    if asked.picture:
+        picture(table, asked.picture)
+    for line in bad:
+        print(line, file=sys.stderr)
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
