@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 
 use crate::docs::{anchor, page, pages};
+use crate::python::file;
 
 /// Letters of indices, of the circle and of a place that is integrated over.
 const NO_SYMBOLS: [&str; 5] = ["i", "j", "l", "pi", "xi"];
@@ -125,7 +126,7 @@ fn every_letter_of_an_equation_is_a_symbol_that_the_equation_of_its_row_introduc
     }
 }
 
-/// The last table of the page: which equations the numbers of a reply follow from.
+/// The table beside the specification: which equations the numbers of a reply follow from.
 pub struct FieldTable {
     pub rows: Vec<FieldRow>,
 }
@@ -139,7 +140,7 @@ pub struct FieldRow {
 
 impl FieldTable {
     pub fn new() -> FieldTable {
-        let text = page("equations.md");
+        let text = std::fs::read_to_string(file("openapi/equations_of_fields.md")).unwrap();
         let (_, table) = text.split_once("| reply | fields | equation |\n|---|---|---|\n").unwrap();
         let mut rows = Vec::new();
         for line in table.lines() {

@@ -1,5 +1,5 @@
 //! Every field of every reply with its unit and its equations: tables that the site has, from the specification and the
-//! last table of `docs/equations.md`.
+//! table of `openapi/equations_of_fields.md`.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
