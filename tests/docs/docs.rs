@@ -122,6 +122,7 @@ fn every_test_that_verification_names_exists() {
     let mut named = 0;
     for row in text.lines().filter(|line| line.starts_with('|')) {
         for (path, name) in row.split('`').filter_map(|cell| cell.split_once("::")) {
+            let (path, name) = (path.trim(), name.trim());
             let source = std::fs::read_to_string(file(path)).unwrap_or_else(|error| panic!("{path}: {error}"));
             let keyword = if path.ends_with(".py") { "def" } else { "fn" };
             assert!(source.contains(&format!("{keyword} {name}(")), "{path} has no test {name}");
