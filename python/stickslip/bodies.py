@@ -60,10 +60,11 @@ RIGID: Final = "rigid"
 
 @dataclass(frozen=True, eq=False)
 class Moduli(Part):
-    """Reduced moduli E* and G*, Pa, in place of the two bodies."""
+    """Reduced moduli E* and G*, Pa, in place of the two bodies, and 1/G = 1/G₁ + 1/G₂ for twist."""
 
     e_star: Quantity
     g_star: Quantity
+    shear_modulus: Quantity | None = None
 
 
 #: Two bodies, or their moduli.

@@ -33,6 +33,8 @@ class Computations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         solvers: Sequence[types.Solver] | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
@@ -70,6 +72,10 @@ class Computations(ABC):
             `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         ellipse : Ellipse | dict
             Turns around an ellipse. Needs `radii`, `turns`; may have `phase`, `steps_per_turn`.
+        twist : Quantities
+            Angles of twist, rad, one move each.
+        torque : Quantities
+            Torques, N·m, one move each.
         path : SimulatedPath
             The path, along a line or in the plane.
         solvers : Sequence[Solver]
@@ -119,6 +125,8 @@ class Computations(ABC):
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
                 "ellipse": ellipse,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer(results.AccuracyReply, "/accuracy", given, parts)
@@ -505,7 +513,7 @@ class Computations(ABC):
             Whether to subtract a tilt, if the scan distinguishes it from an off-centre axis. Default: true.
         load : ScanLoad | dict
             A load, for which the reply then describes the contact. Needs `friction`, `material`, `preload`. `material`
-            has `effective` (`e_star`, `g_star`, `bodies`).
+            has `effective` (`e_star`, `g_star`, `bodies`, `shear_modulus`).
         orientation : ScanOrientation
             Which way up the scan is; `auto` derives it from the curvature of the surface. Default: auto. One of 'auto',
             'peak_up', 'peak_down'.
@@ -693,6 +701,8 @@ class Computations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: None = None,
         residual: bool | None = None,
         solver: None = None,
@@ -714,6 +724,8 @@ class Computations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any],
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         residual: bool | None = None,
         solver: types.Solver | None = None,
@@ -735,6 +747,8 @@ class Computations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         residual: bool | None = None,
         solver: types.Solver | None = None,
@@ -755,6 +769,8 @@ class Computations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         residual: bool | None = None,
         solver: types.Solver | None = None,
@@ -792,6 +808,10 @@ class Computations(ABC):
             `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
         ellipse : Ellipse | dict
             Turns around an ellipse. Needs `radii`, `turns`; may have `phase`, `steps_per_turn`.
+        twist : Quantities
+            Angles of twist, rad, one move each.
+        torque : Quantities
+            Torques, N·m, one move each.
         path : SimulatedPath
             The path.
         residual : bool
@@ -851,6 +871,8 @@ class Computations(ABC):
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
                 "ellipse": ellipse,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer(results.SimulateReply, "/simulate", given, parts)
@@ -1116,6 +1138,8 @@ class AsyncComputations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         solvers: Sequence[types.Solver] | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
@@ -1138,6 +1162,8 @@ class AsyncComputations(ABC):
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
                 "ellipse": ellipse,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer(results.AccuracyReply, "/accuracy", given, parts)
@@ -1350,6 +1376,8 @@ class AsyncComputations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: None = None,
         residual: bool | None = None,
         solver: None = None,
@@ -1371,6 +1399,8 @@ class AsyncComputations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any],
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         residual: bool | None = None,
         solver: types.Solver | None = None,
@@ -1392,6 +1422,8 @@ class AsyncComputations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         residual: bool | None = None,
         solver: types.Solver | None = None,
@@ -1412,6 +1444,8 @@ class AsyncComputations(ABC):
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
         ellipse: types.Ellipse | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.SimulatedPath | None = None,
         residual: bool | None = None,
         solver: types.Solver | None = None,
@@ -1440,6 +1474,8 @@ class AsyncComputations(ABC):
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
                 "ellipse": ellipse,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer(results.SimulateReply, "/simulate", given, parts)
@@ -2096,7 +2132,7 @@ class OfContact(ABC):
             from the edge at −a to the edge at a.
         fields : Sequence[Field]
             Which fields are computed; if left out, `pressure` and `shear`. One of 'pressure', 'shear', 'slip',
-            'displacement'.
+            'displacement', 'hoop'.
         radii : Quantities
             Radii in a round contact, m; outside the contact the stresses are zero.
         x : Quantities

@@ -301,11 +301,13 @@ class Definition(ContactPart):
     friction: Quantity
     """Coulomb's coefficient of friction μ, a pure number."""
     normal_force: Quantity | None = None
-    """Normal force, N."""
+    """Normal force, N; below zero only with `adhesion`."""
     indentation: Quantity | None = None
-    """Indentation, m."""
+    """Indentation, m; below zero only with `adhesion`."""
     contact_radius: Quantity | None = None
     """Contact radius, m."""
+    adhesion: types.Adhesion | Mapping[str, Any] | None = None
+    """Adhesion of the JKR kind; only with `friction` 0. Load and preload may then pull."""
     bulk: types.BulkPerForce | Mapping[str, Any] | None = None
     """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     and under a constant load.

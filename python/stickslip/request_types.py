@@ -23,7 +23,7 @@ Direction: TypeAlias = Literal["x", "y", "z"]
 """An axis: x along the motion of the first body, z into the body asked for."""
 EndReason: TypeAlias = Literal["deleted", "expired", "stopping", "revoked", "damaged", "failed"]
 """Why there are no more events."""
-Field: TypeAlias = Literal["pressure", "shear", "slip", "displacement"]
+Field: TypeAlias = Literal["pressure", "shear", "slip", "displacement", "hoop"]
 """A quantity along the radius."""
 FirstStroke: TypeAlias = Literal["given", "gross_slip", "partial", "stay"]
 """The beginning of a path."""
@@ -53,7 +53,7 @@ ProtocolEnd: TypeAlias = Literal["displacement_zero", "force_zero", "free"]
 """Where a path ends."""
 ProtocolKind: TypeAlias = Literal["linear", "equal_peaks", "minimax"]
 """The law of the amplitudes."""
-Regime: TypeAlias = Literal["stick", "partial_slip", "gross_slip", "separated"]
+Regime: TypeAlias = Literal["stick", "partial_slip", "gross_slip", "separated", "pulled_off"]
 """How much of the contact slipped in the last move."""
 Rigid: TypeAlias = Literal["rigid"]
 """The name of a body that does not deform."""
@@ -65,6 +65,13 @@ Steps: TypeAlias = Literal["all", "last"]
 """Which states of a path to return."""
 SubsurfaceField: TypeAlias = Literal["tensor", "principal", "von_mises", "max_shear", "hydrostatic"]
 """A quantity below the surface."""
+
+
+class Adhesion(TypedDict):
+    """How two surfaces adhere (Johnson, Kendall & Roberts)."""
+
+    work: Quantity
+    """The work of adhesion w, J/m²."""
 
 
 class _AxisNeeded(TypedDict):
@@ -428,7 +435,7 @@ class Move(TypedDict, total=False):
     indentation: Quantity
     """Indentation, m; below zero the bodies are apart and the slip history is lost."""
     normal_force: Quantity
-    """Normal force, N."""
+    """Normal force, N; below zero, if it is no increment, only with `adhesion`."""
     relative: bool
     """Whether the numbers are increments to the present state, instead of the targets themselves."""
 
@@ -543,17 +550,17 @@ class PointScan(TypedDict):
 
 
 class PreloadNormalForce(TypedDict):
-    """Normal force, N."""
+    """Normal force, N; below zero only with `adhesion`."""
 
     normal_force: Quantity
-    """Normal force, N."""
+    """Normal force, N; below zero only with `adhesion`."""
 
 
 class PreloadIndentation(TypedDict):
-    """Indentation, m."""
+    """Indentation, m; below zero only with `adhesion`."""
 
     indentation: Quantity
-    """Indentation, m."""
+    """Indentation, m; below zero only with `adhesion`."""
 
 
 class PreloadContactRadius(TypedDict):
@@ -658,9 +665,16 @@ class SimulatedMove(TypedDict, total=False):
     indentation: Quantity
     """Indentation, m; below zero the bodies are apart and the slip history is lost."""
     normal_force: Quantity
-    """Normal force, N; negative only as an increment."""
+    """Normal force, N; below zero, if it is no increment, only with `adhesion`."""
     relative: bool
     """Whether the numbers are increments to the present state, instead of the targets themselves."""
+    torque: Quantity
+    """Torque about the axis of the contact, N·m, in place of `twist`; its magnitude must stay below that of gross
+    slip.
+    """
+    twist: Quantity
+    """Angle of twist about the axis of the contact, rad, since it last touched, in place of `displacement` or `force`.
+    """
 
 
 class SimulatedPathMoves(TypedDict):
@@ -718,6 +732,20 @@ class SimulatedPathEllipse(TypedDict):
 
     ellipse: Ellipse | Mapping[str, Any]
     """Turns around an ellipse."""
+
+
+class SimulatedPathTwist(TypedDict):
+    """Angles of twist, rad, one move each."""
+
+    twist: Quantities
+    """Angles of twist, rad, one move each."""
+
+
+class SimulatedPathTorque(TypedDict):
+    """Torques, N·m, one move each."""
+
+    torque: Quantities
+    """Torques, N·m, one move each."""
 
 
 class SmoothingNoise(TypedDict):
@@ -960,11 +988,13 @@ class DefinitionMembers(TypedDict, total=False):
     """The preload of a contact, of which one number is given, and what may be left out."""
 
     normal_force: Quantity | None
-    """Normal force, N."""
+    """Normal force, N; below zero only with `adhesion`."""
     indentation: Quantity | None
-    """Indentation, m."""
+    """Indentation, m; below zero only with `adhesion`."""
     contact_radius: Quantity | None
     """Contact radius, m."""
+    adhesion: Adhesion | Mapping[str, Any] | None
+    """Adhesion of the JKR kind; only with `friction` 0. Load and preload may then pull."""
     bulk: BulkPerForce | Mapping[str, Any] | None
     """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     and under a constant load.
@@ -1036,6 +1066,8 @@ SimulatedPath: TypeAlias = Union[
     "SimulatedPathEqualPeaks",
     "SimulatedPathCycles",
     "SimulatedPathEllipse",
+    "SimulatedPathTwist",
+    "SimulatedPathTorque",
     "Mapping[str, Any]",
 ]
 """A path, one key: a list of moves, or a short form of one."""

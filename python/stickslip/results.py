@@ -275,8 +275,14 @@ class Figures(Result):
     electrical_conductance: float | None
     """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
 
+    gross_slip_torque: float | None
+    """Torque at gross slip, N·m; only where the path twists the contact."""
+
     max_pressure: float | None
     """Largest pressure, Pa; `null` where it is infinite, and for a profile without a stress field."""
+
+    pull_off_force: float | None
+    """Load under which the contact pulls off, N, negative; only with `adhesion`."""
 
     semi_axes: Floats | None
     """Semi-axes of the contact along x and y, m; only for an ellipsoid."""
@@ -531,6 +537,12 @@ class PathReply(Result):
     if TYPE_CHECKING:
 
         @property
+        def adhesion_loss(self) -> Floats:
+            """Of each row: What pulling off and jumping into contact have lost since the start, J; only with
+            `adhesion`, and not in the stored moves of a contact.
+            """
+
+        @property
         def contact_radius(self) -> Floats:
             """Of each row: Contact radius a, m; for a line contact the half-width; for a profile without a stress
             field F_N′/(2 E*).
@@ -585,8 +597,22 @@ class PathReply(Result):
             """
 
         @property
+        def surface_energy(self) -> Floats:
+            """Of each row: Energy of the surfaces, −w π a², J; only with `adhesion`."""
+
+        @property
         def thermal_conductance(self) -> Floats:
             """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
+
+        @property
+        def torque(self) -> Floats:
+            """Of each row: Torque, N·m, likewise."""
+
+        @property
+        def twist(self) -> Floats:
+            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
+            `force` then stay.
+            """
 
 
 class PlanarReply(Result):
@@ -873,6 +899,12 @@ class RelaxReply(Result):
     if TYPE_CHECKING:
 
         @property
+        def adhesion_loss(self) -> Floats:
+            """Of each row: What pulling off and jumping into contact have lost since the start, J; only with
+            `adhesion`, and not in the stored moves of a contact.
+            """
+
+        @property
         def contact_radius(self) -> Floats:
             """Of each row: Contact radius a, m; for a line contact the half-width; for a profile without a stress
             field F_N′/(2 E*).
@@ -915,8 +947,22 @@ class RelaxReply(Result):
             """
 
         @property
+        def surface_energy(self) -> Floats:
+            """Of each row: Energy of the surfaces, −w π a², J; only with `adhesion`."""
+
+        @property
         def thermal_conductance(self) -> Floats:
             """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
+
+        @property
+        def torque(self) -> Floats:
+            """Of each row: Torque, N·m, likewise."""
+
+        @property
+        def twist(self) -> Floats:
+            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
+            `force` then stay.
+            """
 
 
 class Residual(Result):
@@ -1071,6 +1117,12 @@ class SimulateReply(Result):
     if TYPE_CHECKING:
 
         @property
+        def adhesion_loss(self) -> Floats:
+            """Of each row: What pulling off and jumping into contact have lost since the start, J; only with
+            `adhesion`, and not in the stored moves of a contact.
+            """
+
+        @property
         def contact_radius(self) -> Floats:
             """Of each row: Contact radius a, m; for a line contact the half-width; for a profile without a stress
             field F_N′/(2 E*).
@@ -1125,8 +1177,22 @@ class SimulateReply(Result):
             """
 
         @property
+        def surface_energy(self) -> Floats:
+            """Of each row: Energy of the surfaces, −w π a², J; only with `adhesion`."""
+
+        @property
         def thermal_conductance(self) -> Floats:
             """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
+
+        @property
+        def torque(self) -> Floats:
+            """Of each row: Torque, N·m, likewise."""
+
+        @property
+        def twist(self) -> Floats:
+            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
+            `force` then stay.
+            """
 
 
 class SlidersReply(Result):
@@ -1200,14 +1266,28 @@ class State(Result):
     in gross slip.
     """
 
+    adhesion_loss: float | None
+    """What pulling off and jumping into contact have lost since the start, J; only with `adhesion`, and not in the
+    stored moves of a contact.
+    """
+
     electrical_conductance: float | None
     """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
 
     stick_centre: float | None
     """Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
 
+    surface_energy: float | None
+    """Energy of the surfaces, −w π a², J; only with `adhesion`."""
+
     thermal_conductance: float | None
     """Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
+
+    torque: float | None
+    """Torque, N·m, likewise."""
+
+    twist: float | None
+    """Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay."""
 
 
 class StateEvent(Result):
@@ -1240,6 +1320,9 @@ class StressReply(Result):
 
     displacement: Floats | None
     """Tangential displacement u(r) of the surface, m; positive along x."""
+
+    hoop: Floats | None
+    """Hoop stress of a contact that is twisted, Pa; positive as a positive angle causes it."""
 
     pressure: Floats | None
     """Normal pressure, Pa; compression is positive; `null` where it is infinite."""

@@ -105,9 +105,11 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "g_star": ("", "Pa"),
         "gross_slip_displacement": ("", "m"),
         "gross_slip_force": ("", "N"),
+        "gross_slip_torque": ("", "N·m"),
         "indentation": ("", "m"),
         "max_pressure": ("", "Pa"),
         "normal_force": ("", "N"),
+        "pull_off_force": ("", "N"),
         "semi_axes": ("[]", "m"),
         "thermal_conductance": ("", "W/K"),
     },
@@ -626,6 +628,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "stroke": ("", None),
     },
     "State": {
+        "adhesion_loss": ("", "J"),
         "contact_radius": ("", "m"),
         "displacement": ("", "m"),
         "dissipated_energy": ("", "J"),
@@ -638,7 +641,10 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "regime": ("", None),
         "stick_centre": ("", "m"),
         "stick_radius": ("", "m"),
+        "surface_energy": ("", "J"),
         "thermal_conductance": ("", "W/K"),
+        "torque": ("", "N·m"),
+        "twist": ("", "rad"),
     },
     "StateEvent": {
         "at": ("", None),
@@ -670,6 +676,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     },
     "Stress": {
         "displacement": ("[]", "m"),
+        "hoop": ("[]", "Pa"),
         "pressure": ("[]", "Pa"),
         "radius": ("[]", "m"),
         "shear": ("[]", "Pa"),
@@ -689,6 +696,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
     },
     "StressReply": {
         "displacement": ("[]", "m"),
+        "hoop": ("[]", "Pa"),
         "pressure": ("[]", "Pa"),
         "radius": ("[]", "m"),
         "shear": ("[]", "Pa"),

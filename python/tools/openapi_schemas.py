@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 Schema = dict[str, Any]
 #: Units of fields, longer ones before those that they begin with, as in `docs/reference.md`.
 UNITS = [
-    *("N²/m³", "W/(m·K)", "W/K", "Ω·m", "N/m²", "S", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "m^(1−n)"),
+    *("N²/m³", "W/(m·K)", "W/K", "Ω·m", "N·m", "rad", "N/m²", "S", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "m^(1−n)"),
     *("Pa", "Hz", "kg", "N", "J", "m³", "m", "s", "degrees"),
 ]
 _STATED = re.compile(", (?:(pure numbers?|a pure number)|(" + "|".join(map(re.escape, UNITS)) + r"))(?![\w/²^'′])")

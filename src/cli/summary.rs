@@ -23,8 +23,9 @@ const FIRST: [&str; 10] = [
 const COLUMNS: usize = 6;
 const ROWS: usize = 24;
 /// Units that descriptions state, longer ones before those that they begin with.
-const UNITS: [&str; 18] = [
-    "N²/m³", "W/K", "Ω·m", "N/m²", "S", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "Pa", "Hz", "kg", "N", "J", "m³", "m", "s",
+const UNITS: [&str; 20] = [
+    "N²/m³", "W/K", "Ω·m", "N·m", "rad", "N/m²", "S", "J/m²", "Pa/N", "N/m", "m/N", "m/s", "Pa", "Hz", "kg", "N", "J",
+    "m³", "m", "s",
 ];
 
 /// A part of the OpenAPI document, and the document.

@@ -3,17 +3,25 @@ import { el, figure, withSubscripts } from "./dom.js";
 import { zonesOf } from "./line_contact.js";
 import { formatInterval, formatNumber, formatQuantity } from "./units.js";
 
-const NAMES = { stick: "Stick", partial_slip: "Partial slip", gross_slip: "Gross slip", separated: "Lifted off" };
+const NAMES = {
+  stick: "Stick",
+  partial_slip: "Partial slip",
+  gross_slip: "Gross slip",
+  separated: "Lifted off",
+  pulled_off: "Pulled off",
+};
 
 /** The part of the contact radius from which on a stick radius would read as all of it. */
 const MOST_SHOWN = 0.995;
 
-/** The regime of a state; bodies without a load between them are apart, whatever the last move did. */
-export const regimeOf = ({ regime, normal_force: load }) => (load > 0 ? regime : "separated");
+/** The regime of a state; bodies that do not adhere are apart without a load, whatever the last move did. */
+export const regimeOf = ({ regime, normal_force: load, surface_energy: surface }) =>
+  load > 0 || surface !== undefined ? regime : "separated";
 
 function sentence(state, moved, isLine) {
   const { stick_radius: c, contact_radius: a } = state;
   const regime = regimeOf(state);
+  if (regime === "pulled_off") return "The contact has been pulled off. A load, or touching, brings it back.";
   if (regime === "separated")
     return "The bodies are apart: there is no load, no friction and no history. A load brings them together.";
   if (!moved) {

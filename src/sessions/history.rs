@@ -68,13 +68,15 @@ impl Sessions {
     }
 
     /// Adds to the states of a page what follows from the rest of a state and is not stored: where the part that stuck
-    /// was, if a bulk stress comes with the force, and the conductances, if the bodies conduct.
+    /// was, if a bulk stress comes with the force, the conductances, if the bodies conduct, and the energy of surfaces
+    /// that adhere.
     ///
     /// # Errors
     /// [`SessionError::NotFound`] or [`SessionError::Expired`], or a failure of the store.
     pub async fn mark_centres(&self, id: Uuid, page: &mut HistoryPage) -> Result<(), SessionError> {
         let session = self.find_own(id).await?;
-        if session.definition.bulk.is_some() || session.definition.material.conducts() {
+        let definition = &session.definition;
+        if definition.bulk.is_some() || definition.material.conducts() || definition.adhesion.is_some() {
             let first = LoadedSession::of_stored(session, &PrepareAnew).map_err(|error| damaged(id, &error))?;
             mark_centres(page, &first.contact);
         }
@@ -85,9 +87,7 @@ impl Sessions {
 /// The same for the contact of the page.
 pub(super) fn mark_centres(page: &mut HistoryPage, contact: &Contact) {
     for HistoryItem { state, .. } in &mut page.items {
-        let conductance = contact.conductance(state.indentation);
-        state.stick_centre = contact.stick_centre(&(*state).into());
-        state.electrical_conductance = conductance.electrical;
-        state.thermal_conductance = conductance.thermal;
+        *state = contact.completed((*state).into()).into();
+        state.adhesion_loss = None;
     }
 }

@@ -26,6 +26,7 @@ mod formats;
 mod fretting;
 mod fuzz_http;
 mod lab_files;
+mod limit_laws;
 mod line_contacts;
 mod load_curves;
 mod logs;

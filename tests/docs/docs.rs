@@ -43,6 +43,8 @@ async fn every_command_of_the_pages_runs_as_printed() {
         ("line-contacts.md", 2),
         ("shear-strength.md", 1),
         ("viscoelastic.md", 1),
+        ("adhesion.md", 1),
+        ("twist.md", 1),
         ("rough-contacts.md", 1),
         ("measured-surfaces.md", 2),
         ("measured-loops.md", 1),

@@ -12,11 +12,13 @@ use crate::equations::{FieldRow, FieldTable, equations, is_end_of};
 use crate::python::file;
 
 /// The units of the fields of replies, longer ones before those that they begin with.
-const UNITS: [&str; 20] = [
+const UNITS: [&str; 22] = [
     "N²/m³",
     "W/(m·K)",
     "W/K",
     "Ω·m",
+    "N·m",
+    "rad",
     "m³",
     "J/m²",
     "Pa/N",

@@ -71,6 +71,10 @@ pub fn record(sequence: u64) -> Record {
             thermal_conductance: None,
             time: sequence.is_multiple_of(4).then_some(number * 0.7),
             viscous_work: sequence.is_multiple_of(4).then_some(number * 0.3),
+            surface_energy: None,
+            adhesion_loss: None,
+            twist: None,
+            torque: None,
         },
         measured: sequence.is_multiple_of(3).then(|| Measured {
             force: -number / 7.0,

@@ -103,7 +103,7 @@ impl From<Failure> for Refusal {
             Cause::Refused(error) => {
                 let mut fault = Fault::new(failure.pointer, detail.clone());
                 match error {
-                    Error::ForceExceedsFriction { limit, .. } => {
+                    Error::ForceExceedsFriction { limit, .. } | Error::TorqueExceedsFriction { limit, .. } => {
                         (fault.exclusive_minimum, fault.exclusive_maximum) = (Some(-limit), Some(limit));
                     }
                     Error::BulkTooLarge { largest, .. } => {

@@ -291,6 +291,6 @@ fn regime(regime: Regime) -> c_int {
         Regime::Stick => 0,
         Regime::PartialSlip => 1,
         Regime::GrossSlip => 2,
-        Regime::Separated => 3,
+        Regime::Separated | Regime::PulledOff => 3,
     }
 }

@@ -68,6 +68,7 @@ pub struct Elasticity {
     e_star: f64,
     g_star: f64,
     /// The elastic bodies, where they are known.
+    shear_modulus: Option<f64>,
     bodies: [Option<Body>; 2],
 }
 
@@ -104,7 +105,12 @@ impl Elasticity {
 
     fn of(bodies: [Option<Body>; 2]) -> Elasticity {
         let modulus = |compliance: fn(Body) -> f64| bodies.into_iter().flatten().map(compliance).sum::<f64>().recip();
-        Elasticity { e_star: modulus(Body::normal_compliance), g_star: modulus(Body::tangential_compliance), bodies }
+        Elasticity {
+            e_star: modulus(Body::normal_compliance),
+            g_star: modulus(Body::tangential_compliance),
+            shear_modulus: None,
+            bodies,
+        }
     }
 
     /// The reduced moduli E* and G* themselves (Pa); the bodies, and so Dundurs' beta, remain unknown.
@@ -112,7 +118,8 @@ impl Elasticity {
     /// # Errors
     /// [`Error::OutOfRange`] by [`range::E_STAR`] and [`range::G_STAR`].
     pub fn effective(e_star: f64, g_star: f64) -> Result<Elasticity, Error> {
-        Ok(Elasticity { e_star: range::E_STAR.check(e_star)?, g_star: range::G_STAR.check(g_star)?, bodies: [None; 2] })
+        let (e_star, g_star) = (range::E_STAR.check(e_star)?, range::G_STAR.check(g_star)?);
+        Ok(Elasticity { e_star, g_star, shear_modulus: None, bodies: [None; 2] })
     }
 
     /// The same bodies with measured reduced moduli (Pa) in place of those that follow from their constants: an
@@ -147,9 +154,29 @@ impl Elasticity {
         Elasticity { g_star: self.e_star, ..self }
     }
 
+    /// That of both moduli alike, Pa: springs of any kind.
+    pub(crate) fn of_springs(modulus: f64) -> Elasticity {
+        Elasticity { e_star: modulus, g_star: modulus, shear_modulus: None, bodies: [None; 2] }
+    }
+
     /// With G* in place of E* as well: the tangential problem as one of pressing.
     pub(crate) fn tangential(self) -> Elasticity {
         Elasticity { e_star: self.g_star, ..self }
+    }
+
+    /// The same with a shear modulus of the pair, 1/G = 1/G_1 + 1/G_2, Pa, which twist needs.
+    ///
+    /// # Errors
+    /// [`Error::OutOfRange`].
+    pub fn with_shear_modulus(self, shear_modulus: f64) -> Result<Elasticity, Error> {
+        Ok(Elasticity { shear_modulus: Some(range::SHEAR_MODULUS.check(shear_modulus)?), ..self })
+    }
+
+    /// 1/G = 1/G_1 + 1/G_2, Pa, if it was given or the bodies are known.
+    #[must_use]
+    pub fn shear_modulus(&self) -> Option<f64> {
+        let compliance: f64 = self.bodies.into_iter().flatten().map(|body| body.shear_modulus().recip()).sum();
+        self.shear_modulus.or((compliance > 0.0).then(|| compliance.recip()))
     }
 
     /// Reduced modulus E*, Pa.

@@ -174,6 +174,10 @@ impl Document for AccuracyRequest {
         faults.needs_round_contact(setup.as_ref(), JsonPath::Root.member("contact").member("profile"), SPRINGS);
         let plan = self.path.check(false, JsonPath::Root.member("path"), faults).map(along_its_line);
         let plane = if let Some(Plan::Plane(plane)) = &plan { Some(plane) } else { None };
+        if let Some(Plan::Twist(_)) = &plan {
+            faults
+                .add(JsonPath::Root.member("path"), "solvers are compared on paths along the surface, without a twist");
+        }
         let stress = self.stress.unwrap_or_else(|| StressRequest {
             points: Some(COMPARED_RADII),
             fields: Some(vec![Field::Shear]),

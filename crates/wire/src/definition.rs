@@ -23,6 +23,8 @@ pub struct ContactDefinition {
     /// Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load
     /// must stay constant from the first tangential move on.
     pub shear_strength: Option<f64> = range::SHEAR_STRENGTH,
+    /// Adhesion of the JKR kind; only with `friction` 0. Load and preload may then pull.
+    pub adhesion: Option<Adhesion>,
     /// The normal load that the contact starts with.
     pub preload: Preload,
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
@@ -42,6 +44,12 @@ pub struct PronyTerm: Copy {
     pub ratio: f64 = range::PRONY_RATIO,
     /// Its relaxation time, s.
     pub time: f64 = range::PRONY_TIME,
+}
+
+/// How two surfaces adhere (Johnson, Kendall & Roberts).
+pub struct Adhesion: Copy {
+    /// The work of adhesion w, J/m².
+    pub work: f64 = range::ADHESION,
 }
 
 /// An isotropic, linearly elastic body.
@@ -64,6 +72,8 @@ pub struct Effective {
     pub e_star: f64 = range::E_STAR,
     /// G*, Pa: 1/G* = Σ (2−νᵢ)/(4Gᵢ).
     pub g_star: f64 = range::G_STAR,
+    /// G, Pa: 1/G = 1/G₁ + 1/G₂; only twist needs it.
+    pub shear_modulus: Option<f64> = range::SHEAR_MODULUS,
     /// The two bodies on which the moduli were measured, if they are known. The contact has the moduli above; the
     /// stress below its surface, the fatigue criteria and the warnings use the constants of these bodies.
     pub bodies: Option<Vec<Body>> = BODIES,
@@ -127,16 +137,30 @@ pub enum Rigid {
 
 /// How many terms a Prony series has.
 pub(crate) const PRONY_TERMS: RangeInclusive<usize> = count(&range::PRONY_TERMS);
+/// A range that adhesion reaches on the other side of zero as well: a definition without it is checked against the
+/// range itself.
+struct Pulling(Range);
+
+impl Limit<f64> for Pulling {
+    fn keywords(&self) -> Value {
+        Limit::<f64>::keywords(&Range { min: -self.0.max, ..self.0 })
+    }
+
+    fn check(&self, value: &f64, at: JsonPath<'_>, faults: &mut Faults) {
+        Limit::check(&Range { min: -self.0.max, ..self.0 }, value, at, faults);
+    }
+}
+
 /// How many bodies there are.
 const BODIES: Items = Items(2..=2);
 
 choices! {
 /// The normal load that the contact starts with, one key. Zero is a contact just touching.
 pub enum Preload {
-    /// Normal force, N.
-    "normal_force" => NormalForce(f64) = range::NORMAL_FORCE,
-    /// Indentation, m.
-    "indentation" => Indentation(f64) = range::PRELOAD_INDENTATION,
+    /// Normal force, N; below zero only with `adhesion`.
+    "normal_force" => NormalForce(f64) = Pulling(range::NORMAL_FORCE),
+    /// Indentation, m; below zero only with `adhesion`.
+    "indentation" => Indentation(f64) = Pulling(range::PRELOAD_INDENTATION),
     /// Contact radius, m.
     "contact_radius" => ContactRadius(f64) = range::CONTACT_RADIUS,
 }
@@ -188,6 +212,18 @@ impl ContactDefinition {
             faults.add(at.member("material").member("effective"), mechanics::Error::BodiesNeeded);
         }
         let preload = (&self.preload).into();
+        if self.adhesion.is_none() {
+            let at = at.member("preload");
+            match self.preload {
+                Preload::NormalForce(force) => {
+                    Limit::check(&range::NORMAL_FORCE, &force, at.member("normal_force"), faults)
+                }
+                Preload::Indentation(depth) => {
+                    Limit::check(&range::PRELOAD_INDENTATION, &depth, at.member("indentation"), faults)
+                }
+                Preload::ContactRadius(_) => {}
+            }
+        }
         let (mut profile, elasticity) = (profile?, elasticity?);
         if let Some(bulk) = &self.bulk {
             profile = Arc::new(bulk.check(&profile, &self.material, at.member("bulk"), faults)?);
@@ -199,7 +235,8 @@ impl ContactDefinition {
             return None;
         }
         let shear_strength = self.shear_strength.unwrap_or(0.0);
-        let law = Law { limit: Friction { coefficient: self.friction, shear_strength }, memory: None };
+        let adhesion = self.adhesion.map_or(0.0, |adhesion| adhesion.work);
+        let law = Law { limit: Friction { coefficient: self.friction, shear_strength, adhesion }, memory: None };
         let setup = Setup { profile, elasticity, friction: law, preload };
         match &self.prony {
             Some(terms) => self.check_memory(terms, setup, at.member("prony"), faults),
@@ -230,6 +267,9 @@ impl ContactDefinition {
         if self.shear_strength.is_some_and(|strength| strength > 0.0) {
             faults.unanswerable(at, mechanics::Error::Viscoelastic("`shear_strength`"));
         }
+        if self.adhesion.is_some() {
+            faults.unanswerable(at, mechanics::Error::Viscoelastic("`adhesion`"));
+        }
         faults.needs_round_contact(Some(&setup), at, "`prony`");
         faults.needs_stress_field(Some(&setup), at);
         faults.none_within(at)?;
@@ -243,6 +283,7 @@ impl ContactDefinition {
             Quantity::Friction => "/friction",
             Quantity::ShearStrength => "/shear_strength",
             Quantity::PronyTerms | Quantity::PronyRatio | Quantity::PronyTime => "/prony",
+            Quantity::Adhesion => "/adhesion/work",
             Quantity::NormalForce | Quantity::Indentation | Quantity::ContactRadius => match preload {
                 mechanics::Preload::NormalForce(_) => "/preload/normal_force",
                 mechanics::Preload::Indentation(_) => "/preload/indentation",
@@ -250,6 +291,7 @@ impl ContactDefinition {
             },
             Quantity::EStar => "/material/effective/e_star",
             Quantity::GStar => "/material/effective/g_star",
+            Quantity::ShearModulus => "/material/effective/shear_modulus",
             Quantity::YoungsModulus | Quantity::PoissonRatio => "/material/bodies",
             _ => "/profile",
         }
@@ -258,7 +300,11 @@ impl ContactDefinition {
 
 /// The member that has what a computation does not know.
 pub(crate) fn member_of_law(error: &mechanics::Error) -> &'static str {
-    if matches!(error, mechanics::Error::Viscoelastic(_)) { "prony" } else { "shear_strength" }
+    match error {
+        mechanics::Error::Viscoelastic(_) => "prony",
+        mechanics::Error::Adhesive(_) => "adhesion",
+        _ => "shear_strength",
+    }
 }
 
 impl Material {
@@ -302,13 +348,17 @@ impl Material {
     pub(crate) fn check(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<elasticity::Elasticity> {
         match self {
             Material::Effective(moduli) => {
-                let Effective { e_star, g_star, bodies } = moduli;
-                match bodies {
+                let Effective { e_star, g_star, shear_modulus, bodies } = moduli;
+                let elasticity = match bodies {
                     Some(bodies) => {
                         let at = at.member("effective");
                         check_bodies(bodies, at.member("bodies"), faults)?.with_moduli(*e_star, *g_star).ok()
                     }
                     None => elasticity::Elasticity::effective(*e_star, *g_star).ok(),
+                };
+                match shear_modulus {
+                    Some(modulus) => elasticity?.with_shear_modulus(*modulus).ok(),
+                    None => elasticity,
                 }
             }
             Material::Bodies(bodies) => check_bodies(bodies, at.member("bodies"), faults),

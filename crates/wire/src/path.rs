@@ -5,7 +5,7 @@ mod cycles;
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::{Normal, Tangential};
 
-use super::plane::PlanarPlan;
+use super::plane::{PlanarPlan, TwistPlan};
 use crate::prelude::*;
 
 pub(crate) use cycles::PHASE;
@@ -26,8 +26,8 @@ pub struct Move: Copy, Default {
     pub force: Option<f64> = range::FORCE,
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64> = range::INDENTATION,
-    /// Normal force, N.
-    pub normal_force: Option<f64> = PerhapsIncrement,
+    /// Normal force, N; below zero, if it is no increment, only with `adhesion`.
+    pub normal_force: Option<f64> = range::FORCE,
     /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
     /// it waits.
     pub duration: Option<f64> = range::DURATION,
@@ -35,17 +35,6 @@ pub struct Move: Copy, Default {
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
 }
-}
-
-/// A normal force, which may be negative as an increment: [`Move::check`] knows whether it is one.
-pub(super) struct PerhapsIncrement;
-
-impl Limit<f64> for PerhapsIncrement {
-    fn keywords(&self) -> Value {
-        Limit::<f64>::keywords(&range::FORCE)
-    }
-
-    fn check(&self, _: &f64, _: JsonPath<'_>, _: &mut Faults) {}
 }
 
 choices! {
@@ -122,6 +111,8 @@ pub enum Plan {
     Observations(Vec<Observation>),
     /// Moves in the plane, which `POST /simulate` and `POST /accuracy` follow.
     Plane(PlanarPlan),
+    /// Moves of a contact that is twisted, which `POST /simulate` follows.
+    Twist(TwistPlan),
 }
 
 impl Move {
@@ -137,8 +128,6 @@ impl Move {
 
     /// Notes the faults of the move at `at`, beside the limits of its members.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        let range = if self.relative { range::FORCE } else { range::NORMAL_FORCE };
-        Limit::check(&range, &self.normal_force, at.member("normal_force"), faults);
         if self.displacement.is_some() && self.force.is_some() {
             faults.add(at.member("force"), "conflicts with `displacement`: at most one tangential target is allowed");
         }
@@ -214,6 +203,7 @@ impl Plan {
             Plan::Single(_) => 1,
             Plan::Observations(observations) => observations.len(),
             Plan::Plane(plane) => plane.moves.len(),
+            Plan::Twist(twist) => twist.moves.len(),
         }
     }
 
@@ -223,6 +213,7 @@ impl Plan {
             Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
             Plan::Cycles(cycles) if cycles.is_curved() => cycles.length(),
             Plan::Single(step) => usize::from(step.is_curved()),
+            Plan::Twist(twist) => twist.curved,
             Plan::Displacement(_)
             | Plan::Force(_)
             | Plan::FallingAmplitude(_)
@@ -247,6 +238,7 @@ impl Plan {
             Plan::Single(_) => member,
             Plan::Observations(_) => format!("/observations/{index}/displacement"),
             Plan::Plane(plane) => plane.place_of(index, quantity),
+            Plan::Twist(twist) => twist.place_of(index, quantity),
         }
     }
 }

@@ -6,10 +6,11 @@ use utoipa::PartialSchema;
 use utoipa::openapi::schema::{AnyOfBuilder, ArrayBuilder, OneOfBuilder, SchemaFormat, Type};
 use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
 
-use stickslip_mechanics::Normal;
+use stickslip_mechanics as mechanics;
 use stickslip_mechanics::rings::{self, Arc, PlanarTarget, straight_moves};
+use stickslip_mechanics::{Normal, Tangential};
 
-use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, PHASE, PerhapsIncrement};
+use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, PHASE};
 use super::simulate::SimulateReply;
 use crate::prelude::*;
 
@@ -90,11 +91,16 @@ pub struct SimulatedMove: Copy, Default {
     pub force: Option<Components> = range::FORCE,
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64> = range::INDENTATION,
-    /// Normal force, N; negative only as an increment.
-    pub normal_force: Option<f64> = PerhapsIncrement,
+    /// Normal force, N; below zero, if it is no increment, only with `adhesion`.
+    pub normal_force: Option<f64> = range::FORCE,
     /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`, along a line.
     /// Without a target it waits.
     pub duration: Option<f64> = range::DURATION,
+    /// Angle of twist about the axis of the contact, rad, since it last touched, in place of `displacement` or `force`.
+    pub twist: Option<f64> = range::TWIST,
+    /// Torque about the axis of the contact, N·m, in place of `twist`; its magnitude must stay below that of gross
+    /// slip.
+    pub torque: Option<f64> = range::TORQUE,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -134,6 +140,10 @@ pub enum SimulatedPath {
     "cycles" => Cycles(CyclicPath),
     /// Turns around an ellipse.
     "ellipse" => Ellipse(Ellipse),
+    /// Angles of twist, rad, one move each.
+    "twist" => Twist(Vec<f64>) = Array(PATH_MOVES, range::TWIST),
+    /// Torques, N·m, one move each.
+    "torque" => Torque(Vec<f64>) = Array(PATH_MOVES, range::TORQUE),
 }
 }
 
@@ -267,6 +277,23 @@ pub struct PlanarPlan {
     form: Form,
 }
 
+/// A checked path of a contact that is twisted.
+#[derive(Clone, Debug)]
+pub struct TwistPlan {
+    /// The moves.
+    pub moves: Vec<mechanics::Move>,
+    form: Form,
+    /// How many are curved.
+    pub(crate) curved: usize,
+}
+
+impl TwistPlan {
+    /// As [`PlanarPlan::place_of`].
+    pub(crate) fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
+        self.form.place_of(index, quantity)
+    }
+}
+
 /// How the path was sent.
 #[derive(Clone, Copy, Debug)]
 enum Form {
@@ -277,6 +304,17 @@ enum Form {
     Ellipse(usize),
 }
 
+impl Form {
+    fn place_of(self, index: usize, quantity: Option<Quantity>) -> String {
+        let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();
+        match self {
+            Form::Moves => format!("/path/moves/{index}{member}"),
+            Form::Targets(name) => format!("/path/{name}/{index}"),
+            Form::Ellipse(_) => "/path/ellipse".to_owned(),
+        }
+    }
+}
+
 impl From<Move> for SimulatedMove {
     fn from(step: Move) -> SimulatedMove {
         SimulatedMove {
@@ -285,6 +323,8 @@ impl From<Move> for SimulatedMove {
             indentation: step.indentation,
             normal_force: step.normal_force,
             duration: step.duration,
+            twist: None,
+            torque: None,
             relative: step.relative,
         }
     }
@@ -315,6 +355,34 @@ impl SimulatedMove {
         Move { displacement: x, force, indentation, normal_force, duration, relative }
     }
 
+    fn twists(&self) -> bool {
+        self.twist.is_some() || self.torque.is_some()
+    }
+
+    /// As [`Move::check`], of a move that may twist.
+    fn check_twist(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        if !self.twists() {
+            return self.along_x().check(at, faults);
+        }
+        let others = [("displacement", self.displacement.is_some()), ("force", self.force.is_some())];
+        for (name, _) in others.into_iter().filter(|(_, given)| *given) {
+            faults.unanswerable(at.member(name), mechanics::Error::TwistWithShift);
+        }
+        if self.twist.is_some() && self.torque.is_some() {
+            faults.add(at.member("torque"), "conflicts with `twist`: at most one of them is allowed");
+        }
+        if self.indentation.is_some() && self.normal_force.is_some() {
+            faults.add(at.member("normal_force"), "conflicts with `indentation`: at most one normal target is allowed");
+        }
+    }
+
+    /// The move for the mechanics, along x or by a twist.
+    fn step(&self) -> mechanics::Move {
+        let twist = self.twist.map(Tangential::Twist).or(self.torque.map(Tangential::Torque));
+        let step = self.along_x().step();
+        mechanics::Move { tangential: twist.or(step.tangential), ..step }
+    }
+
     fn in_plane(&self) -> rings::PlanarMove {
         let displacement = self.displacement.map(|target| PlanarTarget::Displacement(target.pair()));
         let force = self.force.map(|target| PlanarTarget::Force(target.pair()));
@@ -339,13 +407,44 @@ impl SimulatedPath {
             SimulatedPath::FallingAmplitude(fall) => Path::FallingAmplitude(fall),
             SimulatedPath::EqualPeaks(peaks) => Path::EqualPeaks(peaks),
             SimulatedPath::Cycles(cycles) => Path::Cycles(cycles),
-            SimulatedPath::Ellipse(_) => return None,
+            SimulatedPath::Ellipse(_) | SimulatedPath::Twist(_) | SimulatedPath::Torque(_) => return None,
         })
+    }
+
+    /// The path of a contact that is twisted, if it is one; faults of its moves are noted at `at`.
+    fn twisting(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<TwistPlan> {
+        let to = |target| mechanics::Move { tangential: Some(target), ..mechanics::Move::default() };
+        let list = |name, moves| Some(TwistPlan { moves, form: Form::Targets(name), curved: 0 });
+        match self {
+            SimulatedPath::Twist(targets) => {
+                list("twist", targets.iter().map(|angle| to(Tangential::Twist(*angle))).collect())
+            }
+            SimulatedPath::Torque(targets) => {
+                list("torque", targets.iter().map(|torque| to(Tangential::Torque(*torque))).collect())
+            }
+            SimulatedPath::Moves(moves) if moves.iter().any(SimulatedMove::twists) => {
+                if let Some(pair) = first_pair(moves) {
+                    faults.unanswerable(JsonPath::Pointer(&format!("/path{pair}")), mechanics::Error::TwistWithShift);
+                }
+                let place = at.member("moves");
+                moves.iter().enumerate().for_each(|(index, step)| step.check_twist(place.index(index), faults));
+                let curved = moves.iter().filter(|step| step.along_x().is_curved()).count();
+                Some(TwistPlan { moves: moves.iter().map(SimulatedMove::step).collect(), form: Form::Moves, curved })
+            }
+            _ => None,
+        }
     }
 
     /// The checked path, in the plane if it has pairs, is an ellipse, or `rings` are asked for.
     pub(crate) fn check(self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
         faults.none_within(at)?;
+        if let Some(plan) = self.twisting(at, faults) {
+            if rings {
+                let detail = "rings follow no twist: leave `solver` out";
+                return faults.refuse(JsonPath::Root.member("solver"), detail);
+            }
+            return Some(Plan::Twist(plan));
+        }
         let plan = |moves: &mut dyn Iterator<Item = SimulatedMove>, form, first_pair: Option<String>| {
             let moves = moves.map(|step| step.in_plane()).collect();
             Some(Plan::Plane(PlanarPlan::new(moves, form, first_pair.unwrap_or_default())))
@@ -468,12 +567,7 @@ impl PlanarPlan {
 
     /// The pointer to the move of this number in the body; `quantity` is the member at fault, if one is.
     pub(crate) fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
-        let member = quantity.map(|quantity| format!("/{quantity}")).unwrap_or_default();
-        match self.form {
-            Form::Moves => format!("/path/moves/{index}{member}"),
-            Form::Targets(name) => format!("/path/{name}/{index}"),
-            Form::Ellipse(_) => "/path/ellipse".to_owned(),
-        }
+        self.form.place_of(index, quantity)
     }
 
     /// Moves of a turn, of an ellipse.

@@ -117,10 +117,14 @@ codes! {
     BulkTooLarge = 422 "bulk_too_large": "The bulk stress is too large for nested stick zones",
         "slip would begin on both sides in opposite directions; `detail` gives the largest stress: [line \
             contacts](line-contacts.md#bulk-stress)";
-    /// The request is valid, but changes the load of a contact with a shear strength that carries shear.
+    /// The request is valid, but changes the load of a contact with a shear strength, or a twist, that carries shear.
     LoadMustBeConstant = 422 "load_must_be_constant": "The load must stay constant",
-        "with a shear strength change the load before the first tangential move, or define a contact under the other \
-            load: [shear strength](shear-strength.md)";
+        "with a shear strength, and to twist it, change the load before the first tangential move, or define a contact \
+            under the other load: [shear strength](shear-strength.md), [twist](twist.md)";
+    /// The request is valid, but twists a contact that has been moved along the surface, or the other way round.
+    TwistWithShift = 422 "twist_with_shift": "Twist and tangential motion meet in one contact",
+        "the direction of slip would depend on the angle: twist another contact, or lift it off in between: \
+            [twist](twist.md)";
     /// The request is valid, but asks for a stress of a contact that is known by its load curve alone.
     NoStressField = 422 "no_stress_field": "The profile has no stress field",
         "forces and energies follow from a load curve, stresses do not: [rough contacts](rough-contacts.md)";

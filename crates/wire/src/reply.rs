@@ -32,6 +32,10 @@ pub struct ContactSummary: Default omits Option of mechanics::ContactSummary {
     pub electrical_conductance: Option<f64>,
     /// Thermal conductance of the contact, W/K, if its bodies have a `conductivity`.
     pub thermal_conductance: Option<f64>,
+    /// Load under which the contact pulls off, N, negative; only with `adhesion`.
+    pub pull_off_force: Option<f64>,
+    /// Torque at gross slip, N·m; only where the path twists the contact.
+    pub gross_slip_torque: Option<f64>,
 }
 
 /// The state after a move.
@@ -68,6 +72,15 @@ pub struct State: Copy, Default omits Option of mechanics::State {
     /// Work of the tangential force that the bodies have dissipated by their memory since the start, J, if they have
     /// `prony`.
     pub viscous_work: Option<f64>,
+    /// Energy of the surfaces, −w π a², J; only with `adhesion`.
+    pub surface_energy: Option<f64>,
+    /// What pulling off and jumping into contact have lost since the start, J; only with `adhesion`, and not in the
+    /// stored moves of a contact.
+    pub adhesion_loss: Option<f64>,
+    /// Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay.
+    pub twist: Option<f64>,
+    /// Torque, N·m, likewise.
+    pub torque: Option<f64>,
 }
 }
 
@@ -83,6 +96,8 @@ pub enum Regime: Default of mechanics::Regime {
     GrossSlip = "gross_slip",
     /// The bodies are apart.
     Separated = "separated",
+    /// The bodies are apart, after their contact has been pulled off.
+    PulledOff = "pulled_off",
 }
 }
 
@@ -216,7 +231,7 @@ pub fn finite(value: f64) -> Option<f64> {
 same_members! {
     mechanics::State [State] displacement force indentation normal_force contact_radius stick_radius stick_centre regime
     dissipated_energy elastic_energy memory_depth electrical_conductance thermal_conductance
-    time viscous_work
+    time viscous_work surface_energy adhesion_loss twist torque
 }
 
 impl Residual {

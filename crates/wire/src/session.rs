@@ -1,10 +1,9 @@
 //! The bodies and replies of `/contacts`: contacts that the server keeps.
 
-use super::definition::{PRONY_TERMS, PronyTerm};
+use super::definition::{Adhesion, PRONY_TERMS, PronyTerm};
 use super::document::checked_alone;
 use super::limits::Characters;
 use super::line_profiles::BulkPerForce;
-use super::path::PerhapsIncrement;
 use super::protocol::Relaxation;
 use crate::prelude::*;
 
@@ -36,6 +35,8 @@ pub struct CreateRequest {
     /// Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load
     /// must stay constant from the first tangential move on.
     pub shear_strength: Option<f64> = range::SHEAR_STRENGTH,
+    /// Adhesion of the JKR kind; only with `friction` 0. Load and preload may then pull.
+    pub adhesion: Option<Adhesion>,
     /// The normal load that the contact starts with.
     pub preload: Preload,
     /// A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
@@ -57,7 +58,8 @@ pub struct MoveRequest: Default {
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64> = range::INDENTATION,
     /// Normal force, N.
-    pub normal_force: Option<f64> = PerhapsIncrement,
+    /// Normal force, N; below zero, if it is no increment, only with `adhesion`.
+    pub normal_force: Option<f64> = range::FORCE,
     /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
     /// it waits.
     pub duration: Option<f64> = range::DURATION,
@@ -264,8 +266,9 @@ impl Document for CreateRequest {
     }
 
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let CreateRequest { label, profile, material, friction, shear_strength, preload, bulk, prony } = self;
-        let definition = ContactDefinition { profile, material, friction, shear_strength, preload, bulk, prony };
+        let CreateRequest { label, profile, material, friction, shear_strength, adhesion, preload, bulk, prony } = self;
+        let definition =
+            ContactDefinition { profile, material, friction, shear_strength, adhesion, preload, bulk, prony };
         let setup = definition.check_any(JsonPath::Root, profiles, faults);
         setup.map(|setup| Creation { label, definition, setup })
     }

@@ -170,6 +170,13 @@ impl Document for SimulateRequest {
         {
             faults.unanswerable(JsonPath::Root.member("contact").member(member_of_law(&error)), error);
         }
+        let hoop = stress.as_ref().is_some_and(|stress| stress.wants(Field::Hoop));
+        if hoop && !matches!(plan, Some(Plan::Twist(_))) {
+            faults.add(
+                JsonPath::Root.member("stress").member("fields"),
+                "`hoop` is the stress of a contact that is twisted: leave it out",
+            );
+        }
         if let Some(Plan::Plane(plane)) = &plan {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()));
             faults.needs_round_contact(setup.as_ref(), JsonPath::Pointer(&plane.first_pair()), "motion in the plane");

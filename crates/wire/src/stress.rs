@@ -33,6 +33,8 @@ pub enum Field {
     Slip = "slip",
     /// Tangential displacement u(r) of the surface, m, inside the contact and outside.
     Displacement = "displacement",
+    /// Hoop stress τ(r) of a contact that is twisted, Pa; a positive angle gives a positive stress.
+    Hoop = "hoop",
 }
 }
 
@@ -51,6 +53,8 @@ pub struct Stress: Default omits Option {
     pub slip: Option<Vec<Option<f64>>>,
     /// Tangential displacement u(r) of the surface, m; positive along x.
     pub displacement: Option<Vec<Option<f64>>>,
+    /// Hoop stress of a contact that is twisted, Pa; positive as a positive angle causes it.
+    pub hoop: Option<Vec<Option<f64>>>,
 }
 }
 

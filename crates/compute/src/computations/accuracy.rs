@@ -240,9 +240,11 @@ fn by_rings(count: usize, task: &Task<'_>) -> Result<Answer, Failure> {
     let begin = Instant::now();
     let start = contact(setup.clone(), "/contact")?;
     let in_plane = |step: mechanics::Move| rings::PlanarMove {
-        tangential: step.tangential.map(|target| match target {
-            Tangential::Displacement(to) => rings::PlanarTarget::Displacement([to, 0.0]),
-            Tangential::Force(to) => rings::PlanarTarget::Force([to, 0.0]),
+        tangential: step.tangential.and_then(|target| match target {
+            Tangential::Displacement(to) => Some(rings::PlanarTarget::Displacement([to, 0.0])),
+            Tangential::Force(to) => Some(rings::PlanarTarget::Force([to, 0.0])),
+            // A comparison with a twist has been refused.
+            Tangential::Twist(_) | Tangential::Torque(_) => None,
         }),
         normal: step.normal,
         relative: step.relative,

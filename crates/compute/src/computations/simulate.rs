@@ -263,12 +263,16 @@ pub fn columns_of_some_states<'a>(
     first: Option<&State>,
     state: impl Fn(usize) -> &'a State + Copy + Send + 'a,
 ) -> Vec<Column<'a>> {
-    let columns: [OptionalColumn; 5] = [
+    let columns: [OptionalColumn; 9] = [
         ("stick_centre", "m", |state| state.stick_centre),
         ("electrical_conductance", "S", |state| state.electrical_conductance),
         ("thermal_conductance", "W/K", |state| state.thermal_conductance),
         ("time", "s", |state| state.time),
         ("viscous_work", "J", |state| state.viscous_work),
+        ("surface_energy", "J", |state| state.surface_energy),
+        ("adhesion_loss", "J", |state| state.adhesion_loss),
+        ("twist", "rad", |state| state.twist),
+        ("torque", "N·m", |state| state.torque),
     ];
     let has = |(_, _, of): &OptionalColumn| first.is_some_and(|first| of(first).is_some());
     let column = |(name, unit, of): OptionalColumn| Column::floats(name, unit, move |row| of(state(row)));
@@ -277,16 +281,30 @@ pub fn columns_of_some_states<'a>(
 
 /// A panel for each unit.
 fn stresses(stress: &Stress) -> Plot {
-    let [pressure, shear, slip, displacement] = stress::fields(stress);
-    let drawn = [(pressure, Colour::Grey), (shear, Colour::Blue), (slip, Colour::Red), (displacement, Colour::Blue)];
+    let [pressure, shear, slip, displacement, hoop] = stress::fields(stress);
+    let drawn = [
+        (pressure, Colour::Grey),
+        (shear, Colour::Blue),
+        (hoop, Colour::Blue),
+        (slip, Colour::Red),
+        (displacement, Colour::Blue),
+    ];
     let panels = stress::panels(stress.places(), &drawn, &[("stress", "Pa"), ("displacement", "m")]);
     Plot::new("Stresses at the end of the path", stress::place_axis(stress.x.is_some()), panels)
 }
 
 /// The curve of a path, and the states at the ends of its moves.
 fn loop_of(curve: Vec<simulation::Point>, steps: &[State]) -> Plot {
-    let ends = steps.iter().map(|state| (state.displacement, state.force));
+    let twisted = steps.iter().any(|state| state.twist.is_some());
+    let ends = steps.iter().map(|state| match (state.twist, state.torque) {
+        (Some(twist), Some(torque)) => (twist, torque),
+        _ => (state.displacement, state.force),
+    });
     let curves = vec![Curve::line("", Colour::Blue, curve), Curve::dots("", Colour::Blue, ends)];
-    let panel = Panel { y: Axis::of("tangential force F", "N"), curves };
-    Plot::new("States along the path", Axis::of("displacement U", "m"), vec![panel])
+    let (x, y) = if twisted {
+        (Axis::of("angle of twist ω", "rad"), Axis::of("torque M", "N·m"))
+    } else {
+        (Axis::of("displacement U", "m"), Axis::of("tangential force F", "N"))
+    };
+    Plot::new("States along the path", x, vec![Panel { y, curves }])
 }

@@ -77,7 +77,7 @@ impl Outcome for Stresses {
             over(&stress.pressure, sign * friction).map(move |(place, limit)| (place, limit + cohesion(place)))
         };
         let mut bands = Vec::new();
-        if state.regime != Regime::Separated {
+        if !matches!(state.regime, Regime::Separated | Regime::PulledOff) {
             let line = contact.profile().line().is_some();
             let middle = state.stick_centre.unwrap_or(0.0);
             let (from, least) = if line { (middle - stick, -edge) } else { (0.0, 0.0) };
@@ -119,12 +119,13 @@ pub(super) fn place_axis(line: bool) -> Axis {
 pub(super) type NamedField<'a> = (&'static str, &'static str, &'a Values);
 
 /// All fields, whether they were asked for or not.
-pub(super) fn fields(stress: &Stress) -> [NamedField<'_>; 4] {
+pub(super) fn fields(stress: &Stress) -> [NamedField<'_>; 5] {
     [
         (Field::Pressure.name(), "Pa", &stress.pressure),
         (Field::Shear.name(), "Pa", &stress.shear),
         (Field::Slip.name(), "m", &stress.slip),
         (Field::Displacement.name(), "m", &stress.displacement),
+        (Field::Hoop.name(), "Pa", &stress.hoop),
     ]
 }
 

@@ -17,6 +17,8 @@ pub const INLINE_BODY: usize = 1024;
 
 /// One move of the exact solver, with its state, and the state written as JSON.
 pub const MOVE_COST: u64 = 1_000;
+/// What the limit of friction under twist takes.
+const TWIST_COST: u64 = 20_000_000;
 /// One curved move, which is followed in many small steps.
 const CURVED_MOVE_COST: u64 = 3_000_000;
 /// The contribution of one piece of the slip history of a sphere to the stress at one of many radii.
@@ -217,10 +219,12 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let curved = simulation.plan.curved();
+    let twisted = if matches!(simulation.plan, Plan::Twist(_)) { TWIST_COST } else { 0 };
     let exact = Work { moves, curved, depth: 0, radii, residual: simulation.residual }.cost(&simulation.setup.profile);
     let below = |task| of_subsurface(&simulation.setup.profile, task, moves);
     let steps = simulation.setup.friction.memory.as_ref().map_or(0, |_| moves as u64 * MEMORY_MOVE_COST);
-    let exact = exact.saturating_add(steps).saturating_add(simulation.subsurface.as_ref().map_or(0, below));
+    let exact = exact.saturating_add(steps).saturating_add(twisted);
+    let exact = exact.saturating_add(simulation.subsurface.as_ref().map_or(0, below));
     match simulation.solver {
         None | Some(Solver::Exact | Solver::Rings(_)) => exact,
         Some(Solver::Springs(springs)) => {

@@ -170,6 +170,11 @@ impl Failure {
                 | mechanics::Error::Viscoelastic(_)
                 | mechanics::Error::NoMemory
                 | mechanics::Error::FluidUnderLoad
+                | mechanics::Error::Adhesive(_)
+                | mechanics::Error::FrictionWithAdhesion
+                | mechanics::Error::Twisted(_)
+                | mechanics::Error::ShearModulusNeeded
+                | mechanics::Error::TooManyCells
                 | mechanics::Error::BulkNeedsConstantLoad
                 | mechanics::Error::OpenCycle { .. } => Code::InvalidInput,
                 mechanics::Error::NoStressField { .. } => Code::NoStressField,
@@ -177,9 +182,12 @@ impl Failure {
                 | mechanics::Error::BeyondReferenceLength { .. }
                 | mechanics::Error::WornBeyondProfile { .. } => Code::BeyondProfile,
                 mechanics::Error::LoadMustBeConstant => Code::LoadMustBeConstant,
+                mechanics::Error::TwistWithShift => Code::TwistWithShift,
                 mechanics::Error::BulkTooLarge { .. } => Code::BulkTooLarge,
                 mechanics::Error::NotConvexEnough { .. } => Code::ProfileNotConvexEnough,
-                mechanics::Error::ForceExceedsFriction { .. } => Code::ForceExceedsFriction,
+                mechanics::Error::ForceExceedsFriction { .. } | mechanics::Error::TorqueExceedsFriction { .. } => {
+                    Code::ForceExceedsFriction
+                }
                 mechanics::Error::Interrupted | mechanics::Error::CycleTooLarge => Code::TooMuchWork,
                 mechanics::Error::Unsupported { .. } => Code::UnsupportedMove,
             },

@@ -62,7 +62,7 @@ pub(super) fn run<S: Solver>(
     reason: &str,
     stop: &dyn Stop,
 ) -> Result<SimulateReply, Failure> {
-    let summary = solver.exact().initial_summary();
+    let mut summary = solver.exact().initial_summary();
     let protocol = equal_peaks(&simulation.plan, &solver)?;
     let mut largest = summary.contact_radius;
     let all = simulation.steps == Steps::All;
@@ -86,6 +86,9 @@ pub(super) fn run<S: Solver>(
     if simulation.residual {
         check_search(solver.exact().profile(), solver.depth(), stop)?;
     }
+    // The load of a contact that is twisted has stayed since; else it is that of none.
+    let twisted = solver.exact().is_twisted().then(|| solver.exact().twisting().ok()).flatten();
+    summary.gross_slip_torque = twisted.map(|twisting| twisting.normal_force());
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
     let below = simulation.subsurface.as_ref().filter(|_| S::KIND == SolverKind::Exact);
@@ -128,7 +131,7 @@ pub fn contact<F: Into<Law>>(setup: Setup<Arc<Profile>, F>, base: &str) -> Resul
 /// The definition at `/contact` for what knows Coulomb's law alone; `what` names it.
 ///
 /// # Errors
-/// [`Cause::Refused`] if there is a shear strength.
+/// [`Cause::Refused`] if there is a shear strength or adhesion.
 pub fn coulomb(setup: &FrictionSetup, what: &'static str) -> Result<SharedSetup, Failure> {
     setup.clone().coulomb(what).map_err(refused_at("/contact", setup.preload))
 }
@@ -141,7 +144,7 @@ pub fn spring_foundation(setup: &SharedSetup, plan: &Plan, count: usize, stop: &
     let start = contact(setup.clone(), "/contact")?;
     let go_on = || stop.check().is_ok();
     // Only what has a normal target reaches further, and the law of equal peaks has none.
-    let moves = moves(plan, &start, None)?.take_while(|_| go_on()).map(|step| step.step());
+    let moves = moves(plan, &start, None)?.take_while(|_| go_on()).map(|(_, step)| step);
     let springs = springs::largest_contact_radius(setup, moves)
         .and_then(|reach| Springs::new_while(setup.clone(), count, reach, &go_on));
     springs.map_err(|error| refused_at("/contact", setup.preload)(error).unless_interrupted(stop, ""))
@@ -160,6 +163,8 @@ pub fn refused_at(base: &str, preload: Preload) -> impl Fn(mechanics::Error) -> 
             mechanics::Error::ShearStrength(_)
             | mechanics::Error::LineContact(_)
             | mechanics::Error::NoStressField { .. } => "/shear_strength",
+            mechanics::Error::Adhesive(_) => "/adhesion",
+            mechanics::Error::FrictionWithAdhesion => "/friction",
             _ => quantity(&error).map_or("", place_of),
         };
         Failure::at(format!("{base}{place}"), error)
@@ -186,8 +191,9 @@ fn moves<'a>(
     plan: &'a Plan,
     contact: &Contact,
     protocol: Option<&'a Protocol>,
-) -> Result<Box<dyn Iterator<Item = Move> + Send + 'a>, Failure> {
-    Ok(match plan {
+) -> Result<Box<dyn Iterator<Item = (Move, mechanics::Move)> + Send + 'a>, Failure> {
+    let moves: Box<dyn Iterator<Item = Move> + Send + 'a> = match plan {
+        Plan::Twist(twist) => return Ok(Box::new(twist.moves.iter().map(|step| (Move::default(), *step)))),
         Plan::Moves(moves) => Box::new(moves.iter().copied()),
         Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
         Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
@@ -209,7 +215,8 @@ fn moves<'a>(
         }
         // Rings follow these.
         Plan::Plane(_) => Box::new(std::iter::empty()),
-    })
+    };
+    Ok(Box::new(moves.map(|step| (step, step.step()))))
 }
 
 /// The moves of a path as one cycle, from the contact as it is.
@@ -218,7 +225,7 @@ fn moves<'a>(
 /// [`Cause::Refused`] for a cut-off radius that the contact does not allow, or a load that would fall below zero.
 pub fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanics::Move>, Failure> {
     let protocol = equal_peaks(plan, contact)?;
-    Ok(moves(plan, contact, protocol.as_ref())?.map(|step| step.step()).collect())
+    Ok(moves(plan, contact, protocol.as_ref())?.map(|(_, step)| step).collect())
 }
 
 /// The pointer to what has led to the refusal of a move of a plan: the move, or the number at fault if the plan has one
@@ -228,6 +235,7 @@ fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Erro
         (Plan::Cycles(_), mechanics::Error::ForceExceedsFriction { .. }) => Some(Quantity::Force),
         (Plan::Cycles(_), mechanics::Error::BeyondProfile { .. }) => Some(Quantity::ContactRadius),
         (Plan::Cycles(_), _) => quantity(error),
+        (Plan::Twist(_), _) => quantity(error).filter(|known| matches!(known, Quantity::Twist | Quantity::Torque)),
         _ => quantity(error).filter(|quantity| step.is_some_and(|step| step.names(*quantity))),
     };
     plan.place_of(index, named)
@@ -246,9 +254,9 @@ pub fn follow<S: Solver>(
     stop: &dyn Stop,
     mut each: impl FnMut(Move, &S),
 ) -> Result<(), Failure> {
-    for (index, step) in moves(plan, solver.exact(), protocol)?.enumerate() {
+    for (index, (step, made)) in moves(plan, solver.exact(), protocol)?.enumerate() {
         stop.check().map_err(|interrupted| Failure::interrupted(interrupted, &plan.place_of(index, None)))?;
-        solver.apply(&step.step(), tolerance, &|| stop.check().is_ok()).map_err(|error| {
+        solver.apply(&made, tolerance, &|| stop.check().is_ok()).map_err(|error| {
             let refused = Failure::at(place(plan, index, Some(&step), &error), error);
             refused.unless_interrupted(stop, &plan.place_of(index, None))
         })?;
@@ -268,6 +276,10 @@ pub fn follow<S: Solver>(
 pub fn stresses<S: Solver>(solver: &S, sampling: &StressRequest, stop: &dyn Stop) -> Result<Stress, Failure> {
     needs_stress_field(solver.exact(), "/stress")?;
     solver.exact().check_elastic("`stress`").map_err(|error| Failure::at("/stress", error))?;
+    if [Field::Slip, Field::Displacement].into_iter().any(|field| sampling.wants(field)) && solver.exact().is_twisted()
+    {
+        return Err(Failure::at("/stress/fields", mechanics::Error::Twisted("`slip` or `displacement`")));
+    }
     let (places, line) = sampled(solver.exact(), sampling, solver.state().contact_radius, "/stress")?;
     let at_once = solver.radii_at_once();
     let along = |field: Field| -> Result<Option<Vec<Option<f64>>>, Failure> {
@@ -283,8 +295,9 @@ pub fn stresses<S: Solver>(solver: &S, sampling: &StressRequest, stop: &dyn Stop
     };
     let (pressure, shear) = (along(Field::Pressure)?, along(Field::Shear)?);
     let (slip, displacement) = (along(Field::Slip)?, along(Field::Displacement)?);
+    let hoop = along(Field::Hoop)?;
     let (radius, x) = if line { (None, Some(places)) } else { (Some(places), None) };
-    Ok(Stress { radius, x, pressure, shear, slip, displacement })
+    Ok(Stress { radius, x, pressure, shear, slip, displacement, hoop })
 }
 
 /// The places of a request in a contact of this radius or half-width, m, and whether they are x of a line contact.
@@ -329,6 +342,9 @@ fn check_search(profile: &Profile, depth: usize, stop: &dyn Stop) -> Result<(), 
 pub fn residual<S: Solver>(solver: &S, stop: &dyn Stop) -> Result<Residual, Failure> {
     needs_stress_field(solver.exact(), "/residual")?;
     solver.exact().check_elastic("`residual`").map_err(|error| Failure::at("/residual", error))?;
+    if solver.exact().is_twisted() {
+        return Err(Failure::at("/residual", mechanics::Error::Twisted("`residual`")));
+    }
     check_search(solver.exact().profile(), solver.depth(), stop)?;
     match solver.residual(&|| stop.check().is_ok()) {
         Some(residual) => {

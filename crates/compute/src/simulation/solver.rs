@@ -56,6 +56,7 @@ pub trait Solver {
             Field::Shear => contact.shears(radii),
             Field::Slip => contact.slips(radii).into_iter().map(|slip| slip.unwrap_or(f64::NAN)).collect(),
             Field::Displacement => contact.surface_displacements(radii),
+            Field::Hoop => contact.hoops(radii),
         }
     }
 
@@ -134,6 +135,8 @@ impl Solver for Springs {
             Field::Shear => self.shear(radius),
             Field::Slip => self.slip(radius).unwrap_or(f64::NAN),
             Field::Displacement => self.surface_displacement(radius),
+            // Springs follow no twist.
+            Field::Hoop => 0.0,
         };
         radii.iter().map(at).collect()
     }

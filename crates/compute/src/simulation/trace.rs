@@ -69,7 +69,10 @@ fn make<S: Solver>(solver: &mut S, step: &Move, tolerance: f64, stop: &dyn Stop)
 }
 
 fn point(state: &State) -> Point {
-    (state.displacement, state.force)
+    match (state.twist, state.torque) {
+        (Some(twist), Some(torque)) => (twist, torque),
+        _ => (state.displacement, state.force),
+    }
 }
 
 fn extents(points: &[Point]) -> Point {
@@ -149,11 +152,13 @@ impl Way<'_> {
     /// The move from a part of its targets to another.
     fn part(&self, begin: f64, part: f64) -> Move {
         let towards = |from: f64, to: f64| from + part * if self.step.relative { to } else { to - from };
-        let State { displacement, force, indentation, normal_force, .. } = self.state;
+        let State { displacement, force, indentation, normal_force, twist, torque, .. } = self.state;
         Move {
             tangential: self.step.tangential.map(|target| match target {
                 Tangential::Displacement(to) => Tangential::Displacement(towards(displacement, to)),
                 Tangential::Force(to) => Tangential::Force(towards(force, to)),
+                Tangential::Twist(to) => Tangential::Twist(towards(twist.unwrap_or(0.0), to)),
+                Tangential::Torque(to) => Tangential::Torque(towards(torque.unwrap_or(0.0), to)),
             }),
             normal: self.step.normal.map(|target| match target {
                 Normal::Indentation(to) => Normal::Indentation(towards(indentation, to)),

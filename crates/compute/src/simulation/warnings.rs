@@ -168,7 +168,9 @@ pub fn warnings_at(
     let (profile, elasticity) = (contact.profile(), contact.elasticity());
     let mut warnings = Vec::new();
     let mut warn = |code: &str, message: String| warnings.push(Warning::new(code, message));
-    if let Some(beta) = elasticity.dundurs_beta().filter(|beta| beta.abs() > BETA_ROUND_OFF) {
+    // Twist couples with nothing.
+    let shifts = !contact.is_twisted();
+    if let Some(beta) = elasticity.dundurs_beta().filter(|beta| shifts && beta.abs() > BETA_ROUND_OFF) {
         warn(
             "dundurs_beta",
             format!(
@@ -184,7 +186,7 @@ pub fn warnings_at(
             ),
         );
     }
-    let across = elasticity.largest_poisson_ratio().filter(|nu| *nu > 0.0 && profile.line().is_none());
+    let across = elasticity.largest_poisson_ratio().filter(|nu| shifts && *nu > 0.0 && profile.line().is_none());
     if let Some(nu) = across {
         warn(
             "slip_direction",

@@ -2,6 +2,7 @@
 //! replies the same is tested in `tests/api/computations.rs`, that it refuses the same in `tests/api/faults.rs`.
 
 mod accuracy;
+mod adhesion;
 mod conductance;
 mod cycle;
 mod cycles_path;
@@ -25,6 +26,7 @@ mod sliders;
 mod subsurface;
 mod sweeps;
 mod tables;
+mod twist;
 mod uncertain_inputs;
 mod viscoelastic;
 mod warnings;

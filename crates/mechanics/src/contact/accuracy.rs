@@ -9,6 +9,8 @@ const MAX_STEEPNESS: f64 = 1e4;
 /// The error of a stress over mu p_max, over that of the force over mu F_N, if the path begins at another
 /// indentation: beside the radii at which slip once stopped the stress is steep.
 const STRESS_OF_MOVED: f64 = 5.0;
+/// The error of a torque by the points of a table over that of the load, relative.
+const TWISTED_TABLE: f64 = 3.0;
 
 /// Estimated errors by rounding, curved moves, the interpolation of a table or a discretisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +50,17 @@ impl Contact {
         if let Some(bodies) = &self.viscoelastic {
             let (path_error, force_error) = (bodies.path_error, bodies.force_error + bodies.path_error);
             return ErrorEstimate { path_error, force_error, stress_error: 0.0 };
+        }
+        if let Some(twist) = self.twist() {
+            // The limit of twist is an integral over that of pressure: of a table, both have its relative error.
+            let load = self.profile().interpolation_error(self.stiffness_radius()).load;
+            let unresolved = TWISTED_TABLE * 2.0 * self.elasticity.e_star() * load / self.normal_force;
+            let ErrorEstimate { path_error, force_error, stress_error } = twist.contact.accuracy();
+            return ErrorEstimate {
+                path_error,
+                force_error: force_error + unresolved,
+                stress_error: stress_error + unresolved,
+            };
         }
         // Without a load there is nothing to err; with one, an error that is not known is the largest number.
         let pressed = self.normal_force() > 0.0;

@@ -39,7 +39,7 @@ impl Contact {
     /// Energy that is lost with a turning point counts as friction work. What slipped in the last move is not kept.
     ///
     /// # Errors
-    /// [`Error::ShearStrength`] for a contact with a shear strength, [`Error::Viscoelastic`] for bodies with memory.
+    /// As [`Contact::check_coulomb`].
     pub fn packed_fixed(&self, turning_points: usize) -> Result<(Vec<f64>, bool), Error> {
         self.check_coulomb("a history of bounded size")?;
         let bounded = self.history.bounded(&Coulomb(&self.indenter), turning_points);

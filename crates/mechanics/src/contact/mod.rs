@@ -2,20 +2,23 @@
 //! stresses in `surface`.
 
 pub(crate) mod accuracy;
+mod adhesion;
 mod fixed;
+mod law;
 pub(crate) mod normal;
 pub(crate) mod packed;
 mod results;
-mod shear_strength;
 pub(crate) mod state;
 mod stiffness;
+mod twist;
 mod viscoelastic;
 
 use std::sync::Arc;
 
 use crate::slip_history::SlipHistory;
+use adhesion::Adhesion;
+use law::Interface;
 use normal::Preload;
-use shear_strength::ShearStrength;
 use state::{Friction, Law, Setup};
 
 use crate::elasticity::Elasticity;
@@ -66,7 +69,7 @@ pub struct Contact {
     /// displacement.
     pub(crate) inverse_scale: DoubleDouble,
     /// None for Coulomb's law.
-    pub(crate) strength: Option<ShearStrength>,
+    pub(crate) law: Option<Box<Interface>>,
     /// None for elastic bodies.
     pub(crate) viscoelastic: Option<Box<Viscoelastic>>,
 }
@@ -78,7 +81,8 @@ impl Contact {
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
     /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an
     /// ellipsoid and bodies that are unknown; [`Error::LineContact`] and [`Error::NoStressField`] for a shear strength
-    /// of a contact that is not round, and for bodies with memory likewise.
+    /// or adhesion of a contact that is not round, and for bodies with memory likewise;
+    /// [`Error::FrictionWithAdhesion`].
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
@@ -93,7 +97,7 @@ impl Contact {
     /// ```
     pub fn new<P: Into<Arc<Profile>>, F: Into<Law>>(setup: Setup<P, F>) -> Result<Contact, Error> {
         let Setup { profile, elasticity, friction, preload } = setup.shared();
-        let Law { limit: Friction { coefficient: friction, shear_strength }, memory } = friction.into();
+        let Law { limit: Friction { coefficient: friction, shear_strength, adhesion }, memory } = friction.into();
         let elasticity = match &*profile {
             Profile::Ellipsoid(ellipsoid) => elasticity.along_ellipse(ellipsoid.shear_share())?,
             Profile::Line(_) => elasticity.along_line(),
@@ -101,21 +105,26 @@ impl Contact {
         };
         let indenter = Indenter::new(profile);
         range::check_friction(friction)?;
-        let indentation = match preload {
-            Preload::NormalForce(force) => {
+        let adhesion = Adhesion::new(&indenter, &elasticity, friction, adhesion)?;
+        let indentation = match (&adhesion, preload) {
+            (Some(adhesion), _) => adhesion.level_under(&indenter, &elasticity, preload)?,
+            (None, Preload::NormalForce(force)) => {
                 normal::indentation(&indenter, &elasticity, range::check_normal_force(force)?)
             }
-            Preload::Indentation(depth) => range::PRELOAD_INDENTATION.check(depth)?,
-            Preload::ContactRadius(radius) => normal::indentation_at(&indenter, range::CONTACT_RADIUS.check(radius)?)?,
+            (None, Preload::Indentation(depth)) => range::PRELOAD_INDENTATION.check(depth)?,
+            (None, Preload::ContactRadius(radius)) => {
+                normal::indentation_at(&indenter, range::CONTACT_RADIUS.check(radius)?)?
+            }
         };
         range::PRELOAD_INDENTATION.check(indentation)?;
         let contact_radius = indenter.check_radius(indenter.contact_radius(indentation))?;
         range::CONTACT_RADIUS.check(contact_radius)?;
         let indentation = DoubleDouble::from(indentation);
         let history = SlipHistory::new(&Coulomb(&indenter), indentation);
-        let normal_force = match preload {
-            Preload::NormalForce(force) => force,
-            Preload::Indentation(_) | Preload::ContactRadius(_) => {
+        let normal_force = match (&adhesion, preload) {
+            (_, Preload::NormalForce(force)) => force,
+            (Some(adhesion), _) => adhesion.branch(&indenter, &elasticity).force(indentation.value()),
+            (None, Preload::Indentation(_) | Preload::ContactRadius(_)) => {
                 normal::force(&indenter, &elasticity, history.edge())
             }
         };
@@ -144,10 +153,10 @@ impl Contact {
             path_error: 0.0,
             path_kernel: 0.0,
             inverse_scale,
-            strength: None,
+            law: None,
             viscoelastic: None,
         };
-        contact.with_shear_strength(shear_strength)?.with_memory(memory)
+        contact.with_law(shear_strength, adhesion)?.with_memory(memory)
     }
 
     /// The same contact at its preload, before its first move.
@@ -165,9 +174,9 @@ impl Contact {
 
     /// The same definition, displacement and load, without pieces of the slip history.
     pub(crate) fn clone_without_history(&self) -> Contact {
-        let (indenter, strength) = (Arc::clone(&self.indenter), self.strength.clone());
+        let (indenter, law) = (Arc::clone(&self.indenter), self.law.clone());
         let viscoelastic = self.viscoelastic.clone();
-        Contact { indenter, history: SlipHistory::default(), strength, viscoelastic, ..*self }
+        Contact { indenter, history: SlipHistory::default(), law, viscoelastic, ..*self }
     }
 
     /// Becomes a copy of `other`, a contact of the same definition, in the memory that it has: without a new allocation
@@ -200,7 +209,7 @@ impl Contact {
             path_kernel: 0.0,
             ..self.clone_without_history()
         };
-        contact.renew_tangential();
+        contact.renew_law();
         contact.renew_memory();
         contact
     }

@@ -61,6 +61,10 @@ pub struct ContactSummary {
     pub electrical_conductance: Option<f64>,
     /// Thermal conductance, W/K, if the conductivity of both bodies is known.
     pub thermal_conductance: Option<f64>,
+    /// The load under which an adhesive contact pulls off, N; negative.
+    pub pull_off_force: Option<f64>,
+    /// The torque of gross slip, N m, where twist was asked for.
+    pub gross_slip_torque: Option<f64>,
 }
 
 /// ```
@@ -96,6 +100,8 @@ impl ContactSummary {
             gross_slip_force: friction * normal_force,
             electrical_conductance: conductance.electrical,
             thermal_conductance: conductance.thermal,
+            pull_off_force: None,
+            gross_slip_torque: None,
         }
     }
 
@@ -133,8 +139,8 @@ impl Profile {
     ) -> Result<(), Error> {
         let Some(shape) = self.shape() else { return Ok(()) };
         let reach = match *preload {
-            Preload::NormalForce(force) => Reach::Load(force / (2.0 * elasticity.e_star())),
-            Preload::Indentation(depth) => Reach::Level(depth),
+            Preload::NormalForce(force) => Reach::Load(force.max(0.0) / (2.0 * elasticity.e_star())),
+            Preload::Indentation(depth) => Reach::Level(depth.max(0.0)),
             Preload::ContactRadius(radius) => Reach::Radius(radius),
         };
         shape.cells_while(reach, keep_going).map(drop).ok_or(Error::Interrupted)

@@ -8,11 +8,14 @@
 //! | 4 | [`LAYOUT`] and, in the upper half, [`ENGINE`] |
 //! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
 //! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
-//! | the rest | the slip history, see `slip_history/packed.rs`; of a contact with a shear strength (8) this and the |
-//! | | indentation (two parts) come before that of its tangential problem; of bodies with memory their springs are in |
-//! | | its place |
+//! | the rest | the slip history, see `slip_history/packed.rs`; of a contact with a law of its own shear strength, |
+//! | | work of adhesion, level (two parts), and of adhesion its bond and loss come before that of its tangential |
+//! | | problem; of a contact that is twisted, level and history of the twist, and the sign of the error before it; |
+//! | | of bodies with memory their springs are in its place |
 
 use super::Contact;
+use super::adhesion::Bond;
+use super::law::Interface;
 use crate::numerics::packing::{Packed, Reader};
 use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
@@ -24,7 +27,7 @@ use crate::slip_history::limit::Coulomb;
 pub const ENGINE: u16 = 18;
 
 /// The version of the arrangement of the bytes.
-const LAYOUT: u16 = 1;
+const LAYOUT: u16 = 2;
 
 /// Writes the versions that bytes begin with.
 pub(crate) fn write_versions(bytes: &mut Vec<u8>) {
@@ -55,9 +58,14 @@ impl Contact {
     /// How many bytes [`Contact::pack`] makes.
     #[must_use]
     pub fn packed_length(&self) -> usize {
-        let history = match &self.strength {
+        let history = match self.law.as_deref() {
             None if self.viscoelastic.is_some() => 0,
-            Some(_) => 3 * size_of::<f64>() + self.tangential().map_or(0, |contact| contact.history.packed_length()),
+            Some(Interface { twist: Some(twist), .. }) => 2 * size_of::<f64>() + twist.contact.history.packed_length(),
+            Some(law) => {
+                let adhesion = if law.adhesion.is_some() { 2 } else { 0 };
+                let tangential = self.tangential().map_or(0, |contact| contact.history.packed_length());
+                (4 + adhesion) * size_of::<f64>() + tangential
+            }
             None => self.history.packed_length(),
         };
         let bodies = self.viscoelastic.as_ref().map_or(0, |bodies| bodies.packed_length());
@@ -75,12 +83,20 @@ impl Contact {
         self.normal_force.pack(&mut bytes);
         self.dissipated.pack(&mut bytes);
         self.path_error.pack(&mut bytes);
-        self.path_kernel.pack(&mut bytes);
-        match &self.strength {
-            Some(strength) => {
-                strength.value.pack(&mut bytes);
+        // Its sign tells that the contact is twisted.
+        if self.is_twisted() { -self.path_kernel } else { self.path_kernel }.pack(&mut bytes);
+        match self.law.as_deref() {
+            Some(Interface { twist: Some(twist), .. }) => {
                 self.history.edge().level.pack(&mut bytes);
-                strength.tangential.iter().for_each(|contact| contact.history.pack(&mut bytes));
+                twist.contact.history.pack(&mut bytes);
+            }
+            Some(law) => {
+                [law.strength, self.work_of_adhesion()].iter().for_each(|value| value.pack(&mut bytes));
+                self.history.edge().level.pack(&mut bytes);
+                if let Some(adhesion) = &law.adhesion {
+                    [f64::from(adhesion.bond as u8), adhesion.loss].iter().for_each(|value| value.pack(&mut bytes));
+                }
+                law.tangential.iter().for_each(|contact| contact.history.pack(&mut bytes));
             }
             None => match &self.viscoelastic {
                 Some(bodies_with_memory) => bodies_with_memory.pack(&mut bytes),
@@ -122,14 +138,30 @@ impl Contact {
             contact.normal_force = normal_force;
             return Some(contact);
         }
-        if self.strength.is_none() {
+        if contact.path_kernel.is_sign_negative() {
+            contact.path_kernel = -contact.path_kernel;
+            contact.law = None;
+            let history = SlipHistory::new(&Coulomb(&contact.indenter), Packed::unpack(&mut reader)?);
+            contact.history = history.at_position(contact.scaled(contact.displacement));
+            return contact.with_twist_of(Packed::unpack(&mut reader)?);
+        }
+        if self.law.as_ref().is_none_or(|law| law.twist.is_some()) {
+            contact.law = None;
             contact.history = Packed::unpack(&mut reader)?;
             return Some(contact);
         }
-        reader.any().filter(|value| value.to_bits() == self.shear_strength().to_bits())?;
+        for value in [self.shear_strength(), self.work_of_adhesion()] {
+            reader.any().filter(|found| found.to_bits() == value.to_bits())?;
+        }
         contact.history = SlipHistory::new(&Coulomb(&contact.indenter), Packed::unpack(&mut reader)?);
+        if let Some(adhesion) = contact.law.as_mut().and_then(|law| law.adhesion.as_mut()) {
+            let bond: f64 = Packed::unpack(&mut reader)?;
+            let all = [Bond::Apart, Bond::Held, Bond::PulledOff].into_iter();
+            adhesion.bond = { all }.find(|known| f64::from(*known as u8).to_bits() == bond.to_bits())?;
+            adhesion.loss = Packed::unpack(&mut reader)?;
+        }
         contact.renew_tangential();
-        match contact.strength.as_mut().and_then(|strength| strength.tangential.as_deref_mut()) {
+        match contact.law.as_mut().and_then(|law| law.tangential.as_deref_mut()) {
             Some(tangential) => tangential.history = Packed::unpack(&mut reader)?,
             None => reader.0.is_empty().then_some(())?,
         }

@@ -1,15 +1,20 @@
 //! What a contact is asked in its present state, but for searches: forces, radii, pressures, the state as values.
 
 use super::Contact;
+use super::adhesion::{Bond, edge_pressure};
 use super::normal::{self, ContactSummary};
 use super::state::{Regime, State};
 use crate::conductance::Conductance;
 use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::roots::largest_of;
 use crate::profile::{Profile, StressRadius};
 use crate::range;
 use crate::range::error::Error;
+
+/// Radii among which the largest pressure of an adhesive contact is searched for.
+const PLACES: u8 = 64;
 
 /// The results for the present state, each at once: a straight move has no error of its path.
 ///
@@ -107,7 +112,8 @@ impl Contact {
     pub fn pressure(&self, radius: f64) -> f64 {
         let at = StressRadius::new(radius.abs());
         let face = self.indenter.on_face(self.history.edge());
-        face.map_or(f64::NAN, |(face, edge)| normal::pressure(face, &self.elasticity, &edge, &at))
+        let pressure = face.map_or(f64::NAN, |(face, edge)| normal::pressure(face, &self.elasticity, &edge, &at));
+        pressure + self.edge_pressure(&at)
     }
 
     /// [`Contact::pressure`] at each of `radii`, m: faster than one by one.
@@ -115,7 +121,18 @@ impl Contact {
     pub fn pressures(&self, radii: &[f64]) -> Vec<f64> {
         let Some((face, edge)) = self.indenter.on_face(self.history.edge()) else { return vec![f64::NAN; radii.len()] };
         let distances: Vec<f64> = radii.iter().map(|radius| radius.abs()).collect();
-        normal::pressures(face, &self.elasticity, &edge, &distances)
+        let mut pressures = normal::pressures(face, &self.elasticity, &edge, &distances);
+        if self.held().is_some() {
+            for (pressure, radius) in pressures.iter_mut().zip(&distances) {
+                *pressure += self.edge_pressure(&StressRadius::new(*radius));
+            }
+        }
+        pressures
+    }
+
+    /// What adhesion adds to the pressure, Pa.
+    fn edge_pressure(&self, at: &StressRadius) -> f64 {
+        self.held().map_or(0.0, |(_, branch)| edge_pressure(&branch, self.history.edge(), at))
     }
 
     /// The shape of the indenter.
@@ -173,7 +190,8 @@ impl Contact {
     /// Indentation d, m; below zero a gap.
     #[must_use]
     pub fn indentation(&self) -> f64 {
-        self.history.edge().level.value()
+        let edge = self.history.edge();
+        self.held().map_or(edge.level.value(), |(_, branch)| edge.level.value() - branch.stretch(edge))
     }
 
     /// Displacement of gross slip on first loading, m, at the present load.
@@ -185,14 +203,16 @@ impl Contact {
     /// Number of straight pieces that the slip history consists of.
     #[must_use]
     pub fn memory_depth(&self) -> usize {
-        self.tangential().unwrap_or(self).history.pieces().len()
+        let twist = self.twist().map(|twist| &twist.contact);
+        twist.or(self.tangential()).unwrap_or(self).history.pieces().len()
     }
 
     /// Bytes of RAM that the contact takes, its slip history included.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
         let own = size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes();
-        own + self.tangential().map_or(0, Contact::memory_bytes)
+        let twist = self.twist().map(|twist| &twist.contact);
+        own + twist.or(self.tangential()).map_or(0, Contact::memory_bytes)
             + self.viscoelastic.as_ref().map_or(0, |bodies| bodies.heap_bytes())
     }
 
@@ -201,9 +221,25 @@ impl Contact {
     pub fn summary(&self) -> ContactSummary {
         let own =
             ContactSummary::of(&self.indenter, &self.elasticity, self.friction, self.history.edge(), self.normal_force);
+        let own = match self.adhesion() {
+            Some(adhesion) => ContactSummary {
+                indentation: self.indentation(),
+                max_pressure: own.max_pressure.map(|_| self.largest_pressure()),
+                pull_off_force: Some(adhesion.pull_off_force()),
+                ..own
+            },
+            None => own,
+        };
         let Some(contact) = self.tangential() else { return own };
         let (gross_slip_displacement, gross_slip_force) = (contact.gross_slip_displacement(), contact.normal_force);
         ContactSummary { gross_slip_displacement, gross_slip_force, ..own }
+    }
+
+    /// The largest pressure of an adhesive contact, Pa, which may be below zero.
+    fn largest_pressure(&self) -> f64 {
+        let radius = self.contact_radius();
+        let places: Vec<f64> = (0..PLACES).map(|place| radius * f64::from(place) / f64::from(PLACES)).collect();
+        largest_of(&places, 1, 1e-7, |place| self.pressure(place)).1
     }
 
     /// What stresses along the surface are related to, Pa: [`ContactSummary::unit_shear`] with the shear strength.
@@ -215,7 +251,7 @@ impl Contact {
     /// The summary at the preload of the definition.
     #[must_use]
     pub fn initial_summary(&self) -> ContactSummary {
-        if self.strength.is_some() {
+        if self.law.is_some() {
             return self.virgin().summary();
         }
         let (indentation, normal_force) = self.preload;
@@ -249,20 +285,20 @@ impl Contact {
         let conductance = self.conductance(edge.level.value());
         if let Some(contact) = self.tangential() {
             let (normal_force, contact_radius) = (self.normal_force(), self.contact_radius());
-            return State {
-                indentation: edge.level.value(),
+            return self.with_surfaces(State {
+                indentation: self.indentation(),
                 normal_force,
                 contact_radius,
                 electrical_conductance: conductance.electrical,
                 thermal_conductance: conductance.thermal,
                 ..contact.state()
-            };
+            });
         }
         let state = State {
             displacement: self.displacement.value(),
             // The -0 of a virgin contact is 0.
             force: self.force() + 0.0,
-            indentation: edge.level.value(),
+            indentation: self.indentation(),
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),
             stick_radius,
@@ -275,8 +311,12 @@ impl Contact {
             thermal_conductance: conductance.thermal,
             time: None,
             viscous_work: None,
+            surface_energy: None,
+            adhesion_loss: None,
+            twist: None,
+            torque: None,
         };
-        State { stick_centre: self.stick_centre(&state), ..state }
+        self.with_twist(self.with_surfaces(State { stick_centre: self.stick_centre(&state), ..state }))
     }
 
     /// The conductances at an indentation, m; zero if the bodies are apart.
@@ -303,10 +343,32 @@ impl Contact {
         self.elasticity.conductance(|| if indentation < 0.0 { 0.0 } else { self.indenter.point(level).radius })
     }
 
+    /// A state of this contact with what follows from the rest of it.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// assert_eq!(contact.completed(contact.state()), contact.state());
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn completed(&self, state: State) -> State {
+        let conductance = match self.adhesion() {
+            Some(_) => self.elasticity.conductance(|| state.contact_radius),
+            None => self.conductance(state.indentation),
+        };
+        self.with_surfaces(State {
+            stick_centre: self.stick_centre(&state),
+            electrical_conductance: conductance.electrical,
+            thermal_conductance: conductance.thermal,
+            ..state
+        })
+    }
+
     fn stick(&self) -> (f64, Regime) {
         let edge = self.history.edge();
         if edge.level.value() < 0.0 {
-            return (0.0, Regime::Separated);
+            let pulled_off = self.adhesion().is_some_and(|adhesion| adhesion.bond == Bond::PulledOff);
+            return (0.0, if pulled_off { Regime::PulledOff } else { Regime::Separated });
         }
         if self.friction <= 0.0 {
             return (0.0, Regime::GrossSlip);

@@ -22,13 +22,15 @@ pub struct Setup<P = Profile, F = f64> {
     pub preload: Preload,
 }
 
-/// What the shear stress of a contact cannot exceed: |tau| <= tau_0 + mu p.
+/// What an interface carries: shear stresses up to tau_0 + mu p, and tension up to the work of adhesion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Friction {
     /// Coulomb's coefficient mu.
     pub coefficient: f64,
     /// The shear strength tau_0 of the interface, Pa; zero for Coulomb's law.
     pub shear_strength: f64,
+    /// The work of adhesion w, J/m^2; zero for bodies that do not adhere.
+    pub adhesion: f64,
 }
 
 /// What a contact obeys beside linear elasticity: the limit of its shear stress, and the memory of its bodies.
@@ -54,7 +56,7 @@ impl From<f64> for Law {
 
 impl From<f64> for Friction {
     fn from(coefficient: f64) -> Friction {
-        Friction { coefficient, shear_strength: 0.0 }
+        Friction { coefficient, shear_strength: 0.0, adhesion: 0.0 }
     }
 }
 
@@ -62,13 +64,14 @@ impl<P> Setup<P, Law> {
     /// The same with elastic bodies and Coulomb's law alone, for what knows no other; `what` names it.
     ///
     /// # Errors
-    /// [`Error::ShearStrength`] if there is a shear strength, [`Error::Viscoelastic`] if the bodies have memory.
+    /// [`Error::ShearStrength`] if there is a shear strength, [`Error::Adhesive`] if the bodies adhere,
+    /// [`Error::Viscoelastic`] if they have memory.
     ///
     /// ```
     /// use stickslip_mechanics::{Elasticity, Friction, Law, Preload, Setup, Sphere};
     ///
     /// let elasticity = Elasticity::effective(1.15e11, 8.5e10)?;
-    /// let friction = Law::from(Friction { coefficient: 0.3, shear_strength: 1e6 });
+    /// let friction = Law::from(Friction { shear_strength: 1e6, ..Friction::from(0.3) });
     /// let setup = Setup { profile: Sphere::new(0.01)?, elasticity, friction, preload: Preload::NormalForce(10.0) };
     /// let refused = setup.clone().coulomb("wear").unwrap_err();
     /// assert_eq!(refused.to_string(), "wear is not available with a shear strength");
@@ -79,6 +82,9 @@ impl<P> Setup<P, Law> {
         let Setup { profile, elasticity, friction: Law { limit: friction, memory }, preload } = self;
         if memory.is_some() {
             return Err(Error::Viscoelastic(what));
+        }
+        if friction.adhesion > 0.0 {
+            return Err(Error::Adhesive(what));
         }
         if friction.shear_strength > 0.0 {
             return Err(Error::ShearStrength(what));
@@ -116,6 +122,17 @@ pub enum Tangential {
     Displacement(f64),
     /// Tangential force F_x, N.
     Force(f64),
+    /// Angle of twist, rad, since the contact last touched.
+    Twist(f64),
+    /// Torque, N m.
+    Torque(f64),
+}
+
+impl Move {
+    /// Whether it has an angle or a torque for its target.
+    pub(crate) fn twists(&self) -> bool {
+        matches!(self.tangential, Some(Tangential::Twist(_) | Tangential::Torque(_)))
+    }
 }
 
 /// A normal target.
@@ -139,6 +156,8 @@ pub enum Regime {
     GrossSlip,
     /// There is no contact.
     Separated,
+    /// There is none any more: an adhesive contact has been pulled off.
+    PulledOff,
 }
 
 /// The state after a move. Positive displacement gives positive force.
@@ -174,4 +193,12 @@ pub struct State {
     pub time: Option<f64>,
     /// Work of the tangential force that the bodies have dissipated since the start, J, if they have memory.
     pub viscous_work: Option<f64>,
+    /// -w pi a^2, J, if the bodies adhere: what the surfaces have given since they were apart.
+    pub surface_energy: Option<f64>,
+    /// What pulling off and jumping into contact have lost since the start, J, if the bodies adhere.
+    pub adhesion_loss: Option<f64>,
+    /// Angle of twist, rad, from the first twist until the contact lifts off.
+    pub twist: Option<f64>,
+    /// Torque, N m, likewise.
+    pub torque: Option<f64>,
 }

@@ -78,7 +78,7 @@ impl Contact {
         let Some(prony) = memory else { return Ok(self) };
         self.profile().check_round("`prony`")?;
         self.profile().check_stress_field()?;
-        if self.strength.is_some() {
+        if self.law.is_some() {
             return Err(Error::Viscoelastic("`shear_strength`"));
         }
         let (indentation, radius) = (self.indentation(), self.indenter.edge_radius(self.history.edge()));
@@ -133,6 +133,7 @@ impl Contact {
                 let to = range::DISPLACEMENT.check(add(displacement, target))?;
                 Course::Place { from: displacement, to }
             }
+            Some(Tangential::Twist(_) | Tangential::Torque(_)) => return Err(Error::Viscoelastic("twist")),
             Some(Tangential::Force(target)) => {
                 let from = self.force();
                 Course::Force { from, to: range::FORCE.check(add(from, target))? }
@@ -193,6 +194,10 @@ impl Contact {
             thermal_conductance: conductance.thermal,
             time: Some(bodies.time),
             viscous_work: Some((work - elastic_energy - dissipated_energy).max(0.0) + 0.0),
+            surface_energy: None,
+            adhesion_loss: None,
+            twist: None,
+            torque: None,
         }
     }
 }

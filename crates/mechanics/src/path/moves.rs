@@ -87,12 +87,12 @@ impl Contact {
         if step.duration > 0.0 {
             return Err(Error::NoMemory);
         }
-        let normal = self.normal_path(step)?;
-        if self.shear_strength() > 0.0 {
-            self.apply_with_strength(step, &normal)?;
+        if self.law.is_some() || step.twists() {
+            self.apply_by_law(step)?;
             visit(1.0, self);
             return Ok(());
         }
+        let normal = self.normal_path(step)?;
         let tangential = self.tangential_path(step)?;
         // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
         // state.
@@ -127,7 +127,7 @@ impl Contact {
         followed
     }
 
-    fn normal_path(&self, step: &Move) -> Result<NormalPath, Error> {
+    pub(crate) fn normal_path(&self, step: &Move) -> Result<NormalPath, Error> {
         let here = self.history.edge().level;
         if step.normal.is_some() && self.indenter.line().is_some_and(|line| line.bulk().is_some()) {
             return Err(Error::BulkNeedsConstantLoad);
@@ -177,6 +177,7 @@ impl Contact {
                 let to = range::FORCE.check(if step.relative { from + target } else { target })?;
                 TangentialPath::Force { from, to }
             }
+            Some(Tangential::Twist(_) | Tangential::Torque(_)) => return Err(Error::TwistWithShift),
         })
     }
 
@@ -196,6 +197,8 @@ impl Contact {
             tangential: step.tangential.map(|target| match target {
                 Tangential::Displacement(to) => Tangential::Displacement(towards(self.displacement.value(), to)),
                 Tangential::Force(to) => Tangential::Force(towards(self.force(), to)),
+                Tangential::Twist(to) => Tangential::Twist(towards(self.state().twist.unwrap_or(0.0), to)),
+                Tangential::Torque(to) => Tangential::Torque(towards(self.state().torque.unwrap_or(0.0), to)),
             }),
             normal: step.normal.map(|target| match target {
                 Normal::Indentation(to) => Normal::Indentation(towards(self.indentation(), to)),

@@ -117,25 +117,30 @@ impl Stretch<'_> {
             }
             let most = if powers == Powers::Odd { WIDTH } else { WIDTH_OF_ALL_POWERS } * left;
             let width = if whole <= most { whole } else { most.min(0.5 * whole) };
-            let high = width.sqrt();
-            let power = match powers {
-                Powers::All(power) => Some(power as i32),
-                _ => None,
-            };
-            let values = TWENTY_FOUR.places(0.0, 1.0).map(|place| {
-                let u = if power.is_some() { place } else { place.sqrt() };
-                let t = high * u;
+            made.push(fitted(self.kink, square, width, powers, |t| {
                 let above = square + DoubleDouble::square_of(t);
                 let own = self.cell.map_or(0.0, |cell| cell.slope_over_radius(cell.zeta(above)) * t);
-                let gamma = scale * own + root * t / (left - t * t).sqrt();
-                gamma / power.map_or(u, |power| u.powi(power))
-            });
-            let terms = TWENTY_FOUR.terms(&values);
-            made.push(Cell::new(self.kink, square, high, counted(&terms, NEGLIGIBLE), powers));
+                scale * own + root * t / (left - t * t).sqrt()
+            }));
             square = square + DoubleDouble::from(width);
             powers = Powers::Odd;
         }
     }
+}
+
+/// The cell above a square, m^2, that is so wide in squares, of gamma over t.
+pub(super) fn fitted(kink: f64, square: DoubleDouble, width: f64, powers: Powers, gamma: impl Fn(f64) -> f64) -> Cell {
+    let high = width.sqrt();
+    let power = match powers {
+        Powers::All(power) => Some(power as i32),
+        _ => None,
+    };
+    let values = TWENTY_FOUR.places(0.0, 1.0).map(|place| {
+        let u = if power.is_some() { place } else { place.sqrt() };
+        gamma(high * u) / power.map_or(u, |power| u.powi(power))
+    });
+    let terms = TWENTY_FOUR.terms(&values);
+    Cell::new(kink, square, high, counted(&terms, NEGLIGIBLE), powers)
 }
 
 impl Shape for LimitShape {

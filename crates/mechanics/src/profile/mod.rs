@@ -22,6 +22,7 @@ mod sum;
 mod tabulated;
 #[cfg(test)]
 mod tests;
+mod twist_limit;
 
 pub use crate::cells::ring::{Moments, Point, Ring, StressRadius};
 pub use asperities::Asperities;
@@ -32,6 +33,8 @@ pub use line::{LineBulk, LineContact, PadFace, WIDEST};
 pub use load_curve::LoadCurve;
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
+pub use twist_limit::TwistLimit;
+pub(crate) use twist_limit::{MOST_CELLS, Twisted};
 
 use crate::cells::Cells;
 use crate::cells::parabola::Parabola;
@@ -83,6 +86,8 @@ macro_rules! families {
             PadFace(PadFace),
             /// The limit of friction of a contact at one load.
             Limit(LimitShape),
+            /// The limit of friction of a contact under twist, at one load.
+            Twist(TwistLimit),
         }
 
         impl Profile {
@@ -94,6 +99,7 @@ macro_rules! families {
                     Profile::Sum(sum) => Some(sum),
                     Profile::PadFace(face) => Some(face),
                     Profile::Limit(limit) => Some(limit),
+                    Profile::Twist(limit) => Some(limit),
                     Profile::Asperities(_) | Profile::Ellipsoid(_) | Profile::LoadCurve(_) | Profile::Line(_) => None,
                 }
             }

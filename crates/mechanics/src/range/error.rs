@@ -2,6 +2,7 @@
 
 use thiserror::Error as ThisError;
 
+use crate::profile::MOST_CELLS;
 use crate::range::quantity::Quantity;
 use crate::range::unit_prefix::{in_unit, short};
 
@@ -60,10 +61,10 @@ pub enum Error {
     /// A normal target of a contact whose bulk stress moves the stick zone.
     #[error("a bulk stress needs a constant normal force: leave the normal target out")]
     BulkNeedsConstantLoad,
-    /// A load that changes while a contact with a shear strength carries shear.
+    /// A load that changes while a contact with a shear strength, or one that is twisted, carries shear.
     #[error(
-        "with a shear strength the load must stay constant while the contact carries shear stress: change the load \
-         before the first tangential move"
+        "with a shear strength, and under a twist, the load must stay constant while the contact carries shear stress: \
+         change the load before"
     )]
     LoadMustBeConstant,
     /// What knows Coulomb's law alone.
@@ -78,6 +79,38 @@ pub enum Error {
     /// A move that takes time, of elastic bodies.
     #[error("a move takes time only where the bodies have memory: leave `duration` out, or give the contact `prony`")]
     NoMemory,
+    /// What knows bodies that do not adhere alone.
+    #[error("{0} is not available with adhesion")]
+    Adhesive(&'static str),
+    /// What knows contacts that are not twisted alone.
+    #[error("{0} is not available for a contact that is twisted")]
+    Twisted(&'static str),
+    /// Twist and shift of one contact.
+    #[error("twist and tangential motion of one contact are not available together: lift it off in between")]
+    TwistWithShift,
+    /// Twist of bodies whose shear moduli are not known.
+    #[error("twist needs the bodies, or `shear_modulus` beside the reduced moduli")]
+    ShearModulusNeeded,
+    /// Twist of a profile of too many pieces.
+    #[error("twist needs a profile of at most {MOST_CELLS} pieces inside the contact: smooth the table")]
+    TooManyCells,
+    /// No torque as large as this is carried.
+    #[error(
+        "friction holds a torque of no more than {}, but {} was asked for", in_unit(*limit, "N m"),
+        in_unit(*target, "N m")
+    )]
+    TorqueExceedsFriction {
+        /// The torque that the move was to lead to, N m.
+        target: f64,
+        /// That of gross slip, N m.
+        limit: f64,
+    },
+    /// Coulomb's law under tension.
+    #[error(
+        "friction times pressure has no sense under tension: with adhesion `friction` must be 0, and `shear_strength` \
+         is what holds against sliding"
+    )]
+    FrictionWithAdhesion,
     /// Places along x where there are radii alone.
     #[error("{0} is available for line contacts only")]
     RoundContact(&'static str),

@@ -85,10 +85,13 @@ quantities! {
     Conductivity = "conductivity", CONDUCTIVITY: 1e-6 to 1e6 "W/(m·K)", "Thermal conductivity of a body.";
     EStar = "e_star", E_STAR: 1e-3 to 1e18 "Pa", "The reduced modulus E*.";
     GStar = "g_star", G_STAR: 1e-3 to 1e18 "Pa", "The reduced shear modulus G*.";
+    ShearModulus = "shear_modulus", SHEAR_MODULUS: 1e-3 to 1e18 "Pa",
+        "The shear modulus of two bodies in series, 1/G = 1/G₁ + 1/G₂.";
     Friction = "friction", FRICTION: 0.0 to 100.0 "",
         "Coulomb's coefficient of friction; zero means no tangential force at all.";
     ShearStrength = "shear_strength", SHEAR_STRENGTH: 0.0 to 1e18 "Pa",
         "The shear strength of an interface, in addition to friction times pressure.";
+    Adhesion = "adhesion", ADHESION: 1e-12 to 1e3 "J/m²", "The work of adhesion of an interface.";
     NormalForce = "normal_force", NORMAL_FORCE: 0.0 to 1e18 "N", "A normal force that presses the bodies together.";
     ContactRadius = "contact_radius", CONTACT_RADIUS: 0.0 to 1e9 "m",
         "The contact radius, prescribed or as it follows from a load; zero is a contact just touching.";
@@ -96,6 +99,8 @@ quantities! {
         "The indentation that a move may ask for; below zero the bodies are apart.";
     Displacement = "displacement", DISPLACEMENT: -1e9 to 1e9 "m", "The tangential displacement of the indenter.";
     Force = "force", FORCE: -1e20 to 1e20 "N", "A tangential force.";
+    Twist = "twist", TWIST: -1e6 to 1e6 "rad", "An angle of twist.";
+    Torque = "torque", TORQUE: -1e20 to 1e20 "N·m", "A torque.";
     Place = "place", PLACE: -1e9 to 1e9 "m", "A coordinate of a place below the surface.";
     BulkStress = "bulk stress", BULK_STRESS: -1e20 to 1e20 "Pa", "A component of a uniform stress.";
     StressPerForce = "stress_per_force", STRESS_PER_FORCE: -1e30 to 1e30 "Pa/N",

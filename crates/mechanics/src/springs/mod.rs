@@ -171,6 +171,9 @@ impl Springs {
     /// # Errors
     /// As [`Springs::apply`], and [`Error::Interrupted`].
     pub fn apply_while(&mut self, step: &Move, keep_going: &dyn Fn() -> bool) -> Result<(), Error> {
+        if step.twists() {
+            return Err(Error::Twisted("the spring foundation"));
+        }
         match (step.normal, step.tangential) {
             (Some(Normal::NormalForce(_)), Some(_)) => {
                 return Err(Error::Unsupported(UnsupportedMove::NormalForceWithTangentialTarget));
@@ -348,6 +351,10 @@ impl Springs {
             thermal_conductance: conductance.thermal,
             time: None,
             viscous_work: None,
+            surface_energy: None,
+            adhesion_loss: None,
+            twist: None,
+            torque: None,
         }
     }
 }

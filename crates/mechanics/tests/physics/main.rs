@@ -1,6 +1,7 @@
 //! The physics tests, one program: each module holds the solver against closed forms, laws or an independent reference.
 
 mod accuracy;
+mod adhesion;
 mod bounded_history;
 mod closed_cycles;
 mod closed_loops;
@@ -25,6 +26,7 @@ mod force_moves;
 mod fretting;
 mod hard_cases;
 mod laws;
+mod limit_laws;
 mod line_contacts;
 mod lives;
 mod load_curves;
@@ -54,6 +56,7 @@ mod sums_of_tables;
 mod support;
 mod tables;
 mod thin_annuli;
+mod twist;
 mod viscoelastic;
 mod wear;
 mod where_parts_meet;

@@ -10,7 +10,7 @@ use stickslip_mechanics::{
 
 fn contact(profile: Profile, coefficient: f64, shear_strength: f64, preload: Preload) -> Contact {
     let elasticity = Elasticity::effective(1.0, 0.8).unwrap();
-    let friction = Friction { coefficient, shear_strength };
+    let friction = Friction { coefficient, shear_strength, adhesion: 0.0 };
     Contact::new(Setup { profile, elasticity, friction, preload }).unwrap()
 }
 
@@ -77,7 +77,7 @@ fn check_values_are_met() {
     let strength = Contact::new(Setup {
         profile: Profile::Sphere(Sphere::new(1.0).unwrap()),
         elasticity: Elasticity::effective(1.0, 1.0).unwrap(),
-        friction: Friction { coefficient: 0.0, shear_strength: 1.0 },
+        friction: Friction { shear_strength: 1.0, ..Friction::from(0.0) },
         preload: Preload::ContactRadius(1.0),
     })
     .unwrap();
@@ -242,7 +242,7 @@ fn a_packed_contact_comes_back_to_the_last_bit() {
 fn bad_strengths_are_refused() {
     let make = |shear_strength: f64| {
         let elasticity = Elasticity::effective(1.0, 0.8).unwrap();
-        let friction = Friction { coefficient: 0.3, shear_strength };
+        let friction = Friction { shear_strength, ..Friction::from(0.3) };
         let profile = Profile::Sphere(Sphere::new(1.0).unwrap());
         Contact::new(Setup { profile, elasticity, friction, preload: Preload::ContactRadius(1.0) })
     };

@@ -146,7 +146,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
     let elasticity = fit.contact.elasticity();
     // Those of the bodies, where they are known, stay the constants of the stress below the surface.
     let bodies = definition.material.bodies().map(<[_]>::to_vec);
-    let moduli = Effective { e_star: elasticity.e_star(), g_star: elasticity.g_star(), bodies };
+    let moduli = Effective { e_star: elasticity.e_star(), g_star: elasticity.g_star(), shear_modulus: None, bodies };
     let is_modulus_fitted = has(FitParameter::GStar) || has(FitParameter::EStar);
     let profile = match fit.contact.profile() {
         mechanics::Profile::Sphere(sphere) if has(FitParameter::Radius) => Profile::sphere(sphere.curvature_radius()),
@@ -157,6 +157,7 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
         material: if is_modulus_fitted { Material::Effective(moduli) } else { definition.material },
         friction: if has(FitParameter::Friction) { fit.contact.friction() } else { definition.friction },
         shear_strength: definition.shear_strength,
+        adhesion: definition.adhesion,
         preload: definition.preload,
         bulk: definition.bulk,
         prony: None,

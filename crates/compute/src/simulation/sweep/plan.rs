@@ -204,5 +204,6 @@ fn stress_template(sampling: &StressRequest, line: bool) -> Stress {
         shear: column(Field::Shear),
         slip: column(Field::Slip),
         displacement: column(Field::Displacement),
+        hoop: column(Field::Hoop),
     }
 }

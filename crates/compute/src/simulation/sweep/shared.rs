@@ -35,7 +35,8 @@ impl Shared {
         if bound || changed("profile") || point.definition.profile.depends_on_bodies() && changed("material") {
             return None;
         }
-        let fixed = !["material", "friction", "shear_strength", "preload", "prony"].into_iter().any(changed);
+        let members = ["material", "friction", "shear_strength", "adhesion", "preload", "prony"];
+        let fixed = !members.into_iter().any(changed);
         let profile = Arc::clone(&point.setup.profile);
         let contact = fixed.then(|| Contact::new(point.setup).ok());
         Some(Shared { profile, contact: contact.flatten() })

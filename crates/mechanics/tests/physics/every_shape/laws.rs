@@ -156,7 +156,9 @@ impl Case<'_> {
                 self.close(contact, "displacement", [to.displacement, target], 0.0);
             }
             Some(Tangential::Force(target)) => self.close(contact, "force", [to.force, target], loose * limit),
-            None => self.close(contact, "displacement", [to.displacement, from.displacement], 0.0),
+            None | Some(Tangential::Twist(_) | Tangential::Torque(_)) => {
+                self.close(contact, "displacement", [to.displacement, from.displacement], 0.0);
+            }
         }
         match step.normal {
             Some(Normal::Indentation(target)) => self.close(contact, "indentation", [to.indentation, target], 0.0),
