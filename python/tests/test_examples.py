@@ -40,6 +40,14 @@ def test_a_loop_leads_to_the_friction_that_it_was_made_with() -> None:
         assert table.loc[name, "low"] - reach < truth < table.loc[name, "high"] + reach
 
 
+def test_the_loop_of_a_worn_ball_is_predicted_from_that_of_a_ball() -> None:
+    table = run("compare_with_loops")
+    assert table["friction"].iloc[0] == pytest.approx(0.42, rel=2e-3)
+    assert table["machine_compliance"].iloc[0] == pytest.approx(3e-8, rel=0.05)
+    # What is left is the noise, 0.01 N of some 7 N between the extremes.
+    assert table["relative_rms"].iloc[0] == pytest.approx(0.01 / 7.0, rel=0.2)
+
+
 def test_a_larger_motion_is_nearer_to_a_crack() -> None:
     table = run("will_it_crack")
     assert table["margin"].is_monotonic_decreasing
