@@ -196,13 +196,13 @@ mod tests {
             summary(&json!({"steps": steps}), "/simulate", &document)
         };
         let few = text_of(3);
-        for line in ["    displacement  force   regime", "    10 nm         -0.5 N  stick"] {
+        for line in ["  displacement  force    regime", "  10 nm         -500 mN  stick"] {
             assert!(few.lines().any(|one| one == line), "{line} in {few}");
         }
         assert_eq!(few.lines().count(), 1 + 1 + 3 + 1, "{few}");
         let many = text_of(100);
-        assert!(many.contains("    ... 76 more rows: --format csv prints all\n    890 nm"), "{many}");
-        assert!(many.contains("120 nm") && !many.contains("130 nm") && many.contains("    1 um"), "{many}");
+        assert!(many.contains("  ... 76 more rows: --format csv prints all\n  890 nm"), "{many}");
+        assert!(many.contains("120 nm") && !many.contains("130 nm") && many.contains("\n  1 um"), "{many}");
     }
 
     #[test]
