@@ -103,11 +103,6 @@ pub trait Computation: Sized + 'static {
     /// The estimated time of the computation.
     fn cost(task: &Task<Self>) -> Nanoseconds;
 
-    /// The same without what turns out on the way, by which it is refused before it begins.
-    fn known_cost(task: &Task<Self>) -> Nanoseconds {
-        Self::cost(task)
-    }
-
     /// Computes.
     ///
     /// # Errors

@@ -108,10 +108,6 @@ impl Computation for Simulate {
         cost::of_simulation(task)
     }
 
-    fn known_cost(task: &Simulation) -> Nanoseconds {
-        cost::of_moves(task)
-    }
-
     fn run(task: Simulation, stop: &dyn Stop) -> Result<Simulated, Failure> {
         let reply = simulation::simulate_any(&task, stop)?;
         Ok(Simulated { reply, task })

@@ -190,13 +190,6 @@ fn relative_cost_of_moves(profile: &Profile) -> u64 {
     }
 }
 
-/// The cost of the moves of a simulation alone: what else it costs depends on what they leave in the slip history.
-pub fn of_moves(simulation: &Simulation) -> Nanoseconds {
-    let (moves, curved) = (simulation.plan.length(), simulation.plan.curved());
-    let exact = || Work { moves, curved, ..Work::default() }.cost(&simulation.setup.profile);
-    in_plane(simulation).unwrap_or_else(exact)
-}
-
 /// The cost of a simulation of motion in the plane.
 fn in_plane(simulation: &Simulation) -> Option<Nanoseconds> {
     let Plan::Plane(plane) = &simulation.plan else { return None };

@@ -35,8 +35,8 @@ pub struct CyclicPath: Copy {
     #[serde(default)]
     pub start: FirstTurn,
     /// Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower
-    /// turn, at t = j/k. If left out, 2 under a constant load (the turns; more points add recorded states between
-    /// them), otherwise 64.
+    /// turn, at t = j/k. If left out, the two turns alone under a constant load (points add recorded states
+    /// between them), otherwise 64.
     pub points_per_cycle: Option<usize> = POINTS_PER_CYCLE,
     /// The value halfway between the turns, m or N; if left out, zero.
     pub mean: Option<f64> = range::FORCE,

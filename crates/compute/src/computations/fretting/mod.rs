@@ -161,7 +161,9 @@ impl Computation for Fretting {
         places.saturating_mul(each).saturating_add(averaged).saturating_add(netted).saturating_add(followed)
     }
 
-    fn run((_, setup, task): Task<Self>, stop: &dyn Stop) -> Result<Rated, Failure> {
+    fn run(task: Task<Self>, stop: &dyn Stop) -> Result<Rated, Failure> {
+        cost::check(Self::cost(&task), stop)?;
+        let (_, setup, task) = task;
         Ok(Rated { reply: rating::rate(setup, &task, stop)?, task })
     }
 }
