@@ -57,7 +57,9 @@ function numbers(form, at, _changed, body, type, given) {
       : new NumberField(form, place, about);
     const [list, index] = about.name.split("/");
     const value = index === undefined ? given?.[list] : given?.[list]?.[index];
-    if (typeof value === "number") field.control.value = inPower(value, Number(field.choice?.value ?? 0), 6);
+    if (typeof value === "number" && field instanceof NumberField) {
+      field.control.value = inPower(value, Number(field.choice?.value ?? 0), 6);
+    }
     return [about.name, field];
   });
   if (LINE_CONTACTS.includes(type)) body.append(specimenPicture(type));

@@ -89,8 +89,8 @@ pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
     row.text(|name| Ok::<_, std::convert::Infallible>(Tenant::new(name)))
 }
 
-/// Sequence, time, the four targets, whether they are relative, how long the move takes, the tolerance, the state in the order of [`State`], and
-/// the columns of [`measured`], and the name of the key that made the move.
+/// Sequence, time, the four targets, whether they are relative, how long the move takes, the tolerance, the state in
+/// the order of [`State`], and the columns of [`measured`], and the name of the key that made the move.
 pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
     Ok(Record {
         sequence: row.count()?,

@@ -41,13 +41,13 @@
 //! # Why one engine serves every law
 //!
 //! Under Abel transforms a half-space is pointwise in x: the transform of a traction needs what lies at r > x, that of
-//! a displacement what lies at r < x. So every law that is local in r and slips in an outer annulus of one sign is a row
-//! of springs with a stiffness k(x) dx, 2 G* dx for shift and 16 G x^2 dx for twist, and a limit of deflection B(x):
-//! m (d - g) for Coulomb, its twin for twist, and 2 tau_0 sqrt(a^2 - x^2)/G* for a shear strength tau_0.
-//! Where B falls with x and changes by the same amount everywhere (Coulomb under any path), or does not change (any law
-//! at a constant load), the slip history above is exact, written over B(0) - B(x) in place of g(x): a law at a constant
-//! load is a shape. Where slip leaves the annulus (a strength under a load that grows after partial slip) the law is
-//! not local in x, and is refused. Adhesion changes d, F_N and the pressure alone: `contact`.
+//! a displacement what lies at r < x. So every law that is local in r and slips in an outer annulus of one sign is a
+//! row of springs with a stiffness k(x) dx, 2 G* dx for shift and 16 G x^2 dx for twist, and a limit of deflection
+//! B(x): m (d - g) for Coulomb, its twin for twist, and 2 tau_0 sqrt(a^2 - x^2)/G* for a shear strength tau_0. Where B
+//! falls with x and changes by the same amount everywhere (Coulomb under any path), or does not change (any law at a
+//! constant load), the slip history above is exact, written over B(0) - B(x) in place of g(x): a law at a constant load
+//! is a shape. Where slip leaves the annulus (a strength under a load that grows after partial slip) the law is not
+//! local in x, and is refused. Adhesion changes d, F_N and the pressure alone: `contact`.
 //!
 //! Positive displacement gives positive force and positive shear stress. Energies are those of the tangential problem
 //! alone.

@@ -1,4 +1,5 @@
-//! A contact whose bodies have memory: its springs ([`crate::viscoelastic`]) answer for its forces, radius and energies.
+//! A contact whose bodies have memory: its springs ([`crate::viscoelastic`]) answer for its forces, radius and
+//! energies.
 
 use std::sync::Arc;
 
@@ -46,8 +47,8 @@ impl Contact {
         self.viscoelastic.is_some()
     }
 
-    /// Whether the contact has been other than a disc, or slip other than an outer annulus of one sign: from then on the
-    /// results are those of the springs alone, not of the half-space. Never of elastic bodies.
+    /// Whether the contact has been other than a disc, or slip other than an outer annulus of one sign: from then on
+    /// the results are those of the springs alone, not of the half-space. Never of elastic bodies.
     #[must_use]
     pub fn beyond_annulus(&self) -> bool {
         self.viscoelastic.as_ref().is_some_and(|bodies| bodies.beyond)

@@ -6,8 +6,8 @@
 //!
 //! a vertical edge that is pressed in by h adds C (h/a) K(1 - x^2/a^2). A half-space is as stiff as springs of
 //! 16 G x^2 dx (torque over angle, both sides together). So over xi = x^3/(3 a^2) the springs are even, and a constant
-//! load makes of the twist a contact with mu = 1, whose shape is g_w(xi) = w(core) - w(x) and whose tangential force is the torque.
-//! Over x the same levels are a shape whose shear stress at r, times 4 r, is the hoop stress.
+//! load makes of the twist a contact with mu = 1, whose shape is g_w(xi) = w(core) - w(x) and whose tangential force is
+//! the torque. Over x the same levels are a shape whose shear stress at r, times 4 r, is the hoop stress.
 //!
 //! w grows without bound towards the centre, like a logarithm, so that the centre never slips. The shape has a flat
 //! core of 1e-5 of the radius instead, which is 1e-16 of the torque.
