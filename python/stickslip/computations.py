@@ -1598,6 +1598,7 @@ class OfContact(ABC):
         self,
         displacement: Quantity | None = None,
         *,
+        duration: Quantity | None = None,
         force: Quantity | None = None,
         indentation: Quantity | None = None,
         normal_force: Quantity | None = None,
@@ -1613,12 +1614,15 @@ class OfContact(ABC):
         ----------
         displacement : Quantity
             Tangential displacement of the indenter, m.
+        duration : Quantity
+            How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a
+            target it waits.
         force : Quantity
             Tangential force, N. Its magnitude must stay below the friction limit μ F_N.
         indentation : Quantity
             Indentation, m; below zero the bodies are apart and the slip history is lost.
         normal_force : Quantity
-            Normal force, N.
+            Normal force, N. Normal force, N; below zero, if it is no increment, only with `adhesion`.
         relative : bool
             Whether the numbers are increments to the present state, instead of the targets themselves.
         stress : int | StressRequest | dict
@@ -1645,6 +1649,7 @@ class OfContact(ABC):
         """
         given: Document = {
             "displacement": displacement,
+            "duration": duration,
             "force": force,
             "indentation": indentation,
             "normal_force": normal_force,
@@ -2180,6 +2185,7 @@ class AsyncOfContact(ABC):
         self,
         displacement: Quantity | None = None,
         *,
+        duration: Quantity | None = None,
         force: Quantity | None = None,
         indentation: Quantity | None = None,
         normal_force: Quantity | None = None,
@@ -2190,6 +2196,7 @@ class AsyncOfContact(ABC):
         """`move`, awaited."""
         given: Document = {
             "displacement": displacement,
+            "duration": duration,
             "force": force,
             "indentation": indentation,
             "normal_force": normal_force,

@@ -16,6 +16,7 @@ MEMBERS: dict[str, str] = {
     "drive_force": "N",
     "ductility": "1",
     "ductility_exponent": "1",
+    "duration": "s",
     "e_star": "Pa",
     "edge_radius": "m",
     "exponent": "1",

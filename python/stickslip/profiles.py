@@ -312,6 +312,11 @@ class Definition(ContactPart):
     """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     and under a constant load.
     """
+    prony: Sequence[types.PronyTerm | Mapping[str, Any]] | None = None
+    """The memory of the bodies, a Prony series of 1 to 16 terms: their moduli are those of the instant, and relax as
+    R(t) = 1 − Σ ratio (1 − exp(−t/time)). Both bodies are alike, or one is rigid. The preload is put on at once at
+    time 0, and moves have a `duration`.
+    """
     shear_strength: Quantity | None = None
     """Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load
     must stay constant from the first tangential move on.

@@ -424,12 +424,16 @@ class Move(TypedDict, total=False):
     """One move, straight to its targets.
 
     At most one tangential target (`displacement` or `force`) and one normal target (`indentation` or
-    `normal_force`), at least one in all. Without a tangential target the displacement stays, without a normal one
-    the indentation stays.
+    `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement stays,
+    without a normal one the indentation stays.
     """
 
     displacement: Quantity
     """Tangential displacement of the indenter, m."""
+    duration: Quantity
+    """How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
+    it waits.
+    """
     force: Quantity
     """Tangential force, N. Its magnitude must stay below the friction limit μ F_N."""
     indentation: Quantity
@@ -570,6 +574,17 @@ class PreloadContactRadius(TypedDict):
     """Contact radius, m."""
 
 
+class PronyTerm(TypedDict):
+    """A term of a Prony series."""
+
+    ratio: Quantity
+    """By how much of the instantaneous modulus it relaxes, a pure number; all of them add up to 1 at most, which is a
+    fluid.
+    """
+    time: Quantity
+    """Its relaxation time, s."""
+
+
 class ProtocolStartDisplacement(TypedDict):
     """This displacement of a contact that has never moved, m; the path begins with it."""
 
@@ -654,12 +669,16 @@ class SimulatedMove(TypedDict, total=False):
     """One move, straight to its targets.
 
     At most one tangential target (`displacement` or `force`) and one normal target (`indentation` or
-    `normal_force`), at least one in all. Without a tangential target the displacement stays, without a normal one
-    the indentation stays. A pair [x, y] is a target in the plane.
+    `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement stays,
+    without a normal one the indentation stays. A pair [x, y] is a target in the plane.
     """
 
     displacement: Components
     """Tangential displacement of the indenter, m, along x or [x, y]."""
+    duration: Quantity
+    """How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`, along a line.
+    Without a target it waits.
+    """
     force: Components
     """Tangential force, N, along x or [x, y]. Its magnitude must stay below the friction limit μ F_N."""
     indentation: Quantity
@@ -998,6 +1017,11 @@ class DefinitionMembers(TypedDict, total=False):
     bulk: BulkPerForce | Mapping[str, Any] | None
     """A bulk stress along x in proportion to the tangential force, which shifts the stick zone: only with a `cylinder`
     and under a constant load.
+    """
+    prony: Sequence[PronyTerm | Mapping[str, Any]] | None
+    """The memory of the bodies, a Prony series of 1 to 16 terms: their moduli are those of the instant, and relax as
+    R(t) = 1 − Σ ratio (1 − exp(−t/time)). Both bodies are alike, or one is rigid. The preload is put on at once at
+    time 0, and moves have a `duration`.
     """
     shear_strength: Quantity | None
     """Shear strength τ₀ of the interface, Pa: shear stress stays below τ₀ + μp. Zero if left out; otherwise the load

@@ -40,7 +40,7 @@ class Accuracy(Result):
     """
 
     count: int | None
-    """Number of rings of the solver in the plane."""
+    """Number of rings of the solver in the plane, or of springs across the radius of bodies with memory."""
 
     coupling_bound: float | None
     """How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure
@@ -49,7 +49,7 @@ class Accuracy(Result):
     """
 
     steps: int | None
-    """Number of steps on the whole path in the finest discretisation of the rings."""
+    """Number of steps on the whole path in the finest discretisation of rings, or of springs with memory."""
 
     subsurface_error: float | None
     """Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
@@ -605,6 +605,10 @@ class PathReply(Result):
             """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
         @property
+        def time(self) -> Floats:
+            """Of each row: Time since the preload, s, if the bodies have `prony`."""
+
+        @property
         def torque(self) -> Floats:
             """Of each row: Torque, N·m, likewise."""
 
@@ -612,6 +616,12 @@ class PathReply(Result):
         def twist(self) -> Floats:
             """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
             `force` then stay.
+            """
+
+        @property
+        def viscous_work(self) -> Floats:
+            """Of each row: Work of the tangential force that the bodies have dissipated by their memory since the
+            start, J, if they have `prony`.
             """
 
 
@@ -955,6 +965,10 @@ class RelaxReply(Result):
             """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
         @property
+        def time(self) -> Floats:
+            """Of each row: Time since the preload, s, if the bodies have `prony`."""
+
+        @property
         def torque(self) -> Floats:
             """Of each row: Torque, N·m, likewise."""
 
@@ -962,6 +976,12 @@ class RelaxReply(Result):
         def twist(self) -> Floats:
             """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
             `force` then stay.
+            """
+
+        @property
+        def viscous_work(self) -> Floats:
+            """Of each row: Work of the tangential force that the bodies have dissipated by their memory since the
+            start, J, if they have `prony`.
             """
 
 
@@ -1185,6 +1205,10 @@ class SimulateReply(Result):
             """Of each row: Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
         @property
+        def time(self) -> Floats:
+            """Of each row: Time since the preload, s, if the bodies have `prony`."""
+
+        @property
         def torque(self) -> Floats:
             """Of each row: Torque, N·m, likewise."""
 
@@ -1192,6 +1216,12 @@ class SimulateReply(Result):
         def twist(self) -> Floats:
             """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
             `force` then stay.
+            """
+
+        @property
+        def viscous_work(self) -> Floats:
+            """Of each row: Work of the tangential force that the bodies have dissipated by their memory since the
+            start, J, if they have `prony`.
             """
 
 
@@ -1283,11 +1313,19 @@ class State(Result):
     thermal_conductance: float | None
     """Thermal conductance of the contact, W/K, if its bodies have a `conductivity`."""
 
+    time: float | None
+    """Time since the preload, s, if the bodies have `prony`."""
+
     torque: float | None
     """Torque, N·m, likewise."""
 
     twist: float | None
     """Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay."""
+
+    viscous_work: float | None
+    """Work of the tangential force that the bodies have dissipated by their memory since the start, J, if they have
+    `prony`.
+    """
 
 
 class StateEvent(Result):

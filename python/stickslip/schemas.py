@@ -643,8 +643,10 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "stick_radius": ("", "m"),
         "surface_energy": ("", "J"),
         "thermal_conductance": ("", "W/K"),
+        "time": ("", "s"),
         "torque": ("", "N·m"),
         "twist": ("", "rad"),
+        "viscous_work": ("", "J"),
     },
     "StateEvent": {
         "at": ("", None),
