@@ -197,10 +197,11 @@ impl Viscoelastic {
     ) -> Result<(), Error> {
         let curved = leg.normal.is_force() && !leg.tangential.is_still() || leg.tangential.is_force();
         let straight = leg.duration <= 0.0 && !(curved && !leg.normal.is_still());
-        let [shortest, _] = self.prony.times();
+        let forced = leg.normal.is_force() || leg.tangential.is_force();
+        let shortest = self.prony.shortest_time();
         let mut stride = match (straight, leg.duration > 0.0) {
             (true, _) => 1.0,
-            (false, true) => (0.25 * shortest / leg.duration).min(0.25),
+            (false, true) => (0.25 * shortest / leg.duration).min(if forced { 0.25 } else { 1.0 }),
             (false, false) => 0.125,
         };
         if leg.normal.is_force() && self.forces(material)[0] <= 0.0 && !straight {

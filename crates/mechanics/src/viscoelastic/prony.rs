@@ -191,9 +191,9 @@ impl Prony {
         self.relaxed() * w * w + terms.sum::<f64>()
     }
 
-    /// The shortest and the longest of its times, s.
-    pub(super) fn times(&self) -> [f64; 2] {
-        [self.terms[0].time, self.terms[self.terms.len() - 1].time]
+    /// The shortest of its times, s.
+    pub(super) fn shortest_time(&self) -> f64 {
+        self.terms[0].time
     }
 }
 
