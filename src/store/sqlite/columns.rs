@@ -13,8 +13,8 @@ use crate::store::rows::{self, RowReader, Scalar};
 /// The columns of a move beside its contact, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, \
      relative, duration, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, \
-     regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, observed_force, observed_at, made_by, \
-     negative_zeros";
+     regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, observed_force, observed_at, \
+     made_by, negative_zeros";
 
 /// The columns of [`rows::summary`], of [`CONTACTS`].
 pub(super) const SUMMARY_COLUMNS: &str = "c.id, c.label, coalesce(m.sequence, 0), c.created_at, \
