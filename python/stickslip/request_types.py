@@ -214,7 +214,7 @@ class CyclicPath(_CyclicPathNeeded, total=False):
     """Oscillation of the load in the same cycles; if left out, the load is constant."""
     points_per_cycle: int
     """Moves per cycle k, an even number: the points of mean + A cos(2π t), or mean - A cos(2π t) from the lower turn,
-    at t = j/k. If left out, 2 under a constant load (the turns; more points add recorded states between them),
+    at t = j/k. If left out, the two turns alone under a constant load (points add recorded states between them),
     otherwise 64.
     """
     start: FirstTurn

@@ -610,7 +610,7 @@ class PathReply(Result):
 
         @property
         def torque(self) -> Floats:
-            """Of each row: Torque, N·m, likewise."""
+            """Of each row: Torque, N·m, from then on."""
 
         @property
         def twist(self) -> Floats:
@@ -970,7 +970,7 @@ class RelaxReply(Result):
 
         @property
         def torque(self) -> Floats:
-            """Of each row: Torque, N·m, likewise."""
+            """Of each row: Torque, N·m, from then on."""
 
         @property
         def twist(self) -> Floats:
@@ -1210,7 +1210,7 @@ class SimulateReply(Result):
 
         @property
         def torque(self) -> Floats:
-            """Of each row: Torque, N·m, likewise."""
+            """Of each row: Torque, N·m, from then on."""
 
         @property
         def twist(self) -> Floats:
@@ -1317,7 +1317,7 @@ class State(Result):
     """Time since the preload, s, if the bodies have `prony`."""
 
     torque: float | None
-    """Torque, N·m, likewise."""
+    """Torque, N·m, from then on."""
 
     twist: float | None
     """Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay."""

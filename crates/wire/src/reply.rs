@@ -79,7 +79,7 @@ pub struct State: Copy, Default omits Option of mechanics::State {
     pub adhesion_loss: Option<f64>,
     /// Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay.
     pub twist: Option<f64>,
-    /// Torque, N·m, likewise.
+    /// Torque, N·m, from then on.
     pub torque: Option<f64>,
 }
 }

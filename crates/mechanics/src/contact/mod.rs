@@ -80,8 +80,8 @@ impl Contact {
     /// # Errors
     /// [`Error::OutOfRange`] for friction or preload outside [`range`]; [`Error::BeyondProfile`] and
     /// [`Error::NotConvexEnough`] for a preload that the profile has no contact for; [`Error::BodiesNeeded`] for an
-    /// ellipsoid and bodies that are unknown; [`Error::LineContact`] and [`Error::NoStressField`] for a shear strength
-    /// or adhesion of a contact that is not round, and for bodies with memory likewise;
+    /// ellipsoid and bodies that are unknown; [`Error::LineContact`] and [`Error::NoStressField`] for a shear strength,
+    /// adhesion or bodies with memory of a contact that is not round;
     /// [`Error::FrictionWithAdhesion`].
     ///
     /// ```

@@ -199,6 +199,6 @@ pub struct State {
     pub adhesion_loss: Option<f64>,
     /// Angle of twist, rad, from the first twist until the contact lifts off.
     pub twist: Option<f64>,
-    /// Torque, N m, likewise.
+    /// Torque, N m, from then on.
     pub torque: Option<f64>,
 }

@@ -294,7 +294,7 @@ mod tests {
         let prony = Prony::new(&terms.map(|(ratio, time)| PronyTerm { ratio, time })).unwrap();
         let (mut whole, mut cut) = (vec![0.0; 4], vec![0.0; 4]);
         let kernel = prony.kernel(0.7);
-        let foretold = prony.pressed(&kernel, &whole, [0.2, 1.3]);
+        let predicted = prony.pressed(&kernel, &whole, [0.2, 1.3]);
         let mean = prony.mean_of_p(&kernel, &whole, [0.2, 1.3]);
         prony.press(&kernel, &mut whole, [0.2, 1.3]);
         let mut sum = 0.0;
@@ -305,7 +305,7 @@ mod tests {
             prony.press(&kernel, &mut cut, [at(step), at(step + 1)]);
         }
         assert!(whole.iter().zip(&cut).all(|(one, other)| (one - other).abs() < 1e-12), "{whole:?} {cut:?}");
-        assert!((foretold - (1.3 - prony.kept(&whole))).abs() < 1e-14 && (mean - sum).abs() < 1e-12, "{mean} {sum}");
+        assert!((predicted - (1.3 - prony.kept(&whole))).abs() < 1e-14 && (mean - sum).abs() < 1e-12, "{mean} {sum}");
         // From rest by a jump: p = R(t).
         let mut held = vec![0.0; 4];
         prony.press(&prony.kernel(0.7), &mut held, [1.0, 1.0]);

@@ -183,7 +183,7 @@ fn a_load_that_is_held_creeps_as_its_compliance() {
     let expected = 2.5 - 1.5 * (-0.4_f64 * 1.5).exp();
     let found = contact.indentation() / at_once;
     assert!((found - expected).abs() < 1e-5 * expected, "{found} {expected}");
-    // Likewise along the surface, while nothing slips.
+    // Along the surface too, while nothing slips.
     let pulled = |duration| Move { tangential: Some(Tangential::Force(1e-4)), duration, ..Move::default() };
     contact.apply(&pulled(0.0)).unwrap();
     let at_once = contact.displacement();
