@@ -196,7 +196,7 @@ impl Viscoelastic {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
         let curved = leg.normal.is_force() && !leg.tangential.is_still() || leg.tangential.is_force();
-        let straight = leg.duration <= 0.0 && !(curved && !leg.normal.is_still());
+        let straight = leg.duration <= 0.0 && (!curved || leg.normal.is_still());
         let forced = leg.normal.is_force() || leg.tangential.is_force();
         let shortest = self.prony.shortest_time();
         let mut stride = match (straight, leg.duration > 0.0) {

@@ -144,7 +144,7 @@ fn a_dent_recovers_by_its_own_law() {
         contact.apply(&wait(waited)).unwrap();
         let left = 0.01 * ratio * (-(1.0 - ratio) * waited / time).exp();
         contact.apply(&press(0.999 * left, 0.0)).unwrap();
-        assert_eq!(contact.normal_force(), 0.0, "{waited}");
+        assert!(contact.normal_force().abs() <= 0.0, "{waited}");
         contact.apply(&press(1.001 * left, 0.0)).unwrap();
         assert!(contact.normal_force() > 0.0 && contact.contact_radius() > 0.0, "{waited}");
     }
