@@ -27,7 +27,7 @@ thread_local! {
 /// The committed state of a contact and that of its last trial, which keeps its memory for the next one.
 #[derive(Clone)]
 pub struct Stepped<C> {
-    committed: C,
+    committed: Box<C>,
     trial: Option<Box<C>>,
     tried: bool,
 }
@@ -54,7 +54,7 @@ pub struct Target<'a> {
 
 impl<C: Clone> Stepped<C> {
     fn new(committed: C) -> Stepped<C> {
-        Stepped { committed, trial: None, tried: false }
+        Stepped { committed: Box::new(committed), trial: None, tried: false }
     }
 
     /// Makes a step on the committed state or, from it on, on trial.
@@ -74,7 +74,7 @@ impl<C: Clone> Stepped<C> {
                 copy(trial, &self.committed);
                 trial
             }
-            none => none.insert(Box::new(self.committed.clone())),
+            none => none.insert(self.committed.clone()),
         };
         step(trial)?;
         self.tried = true;
@@ -98,7 +98,7 @@ impl<C: Clone> Stepped<C> {
 
     fn replace(&mut self, state: Option<C>) -> Result<(), Fault> {
         let wrong = "these are not the state of such a contact by this version of the library";
-        self.committed = state.ok_or_else(|| Fault::new(SS_INVALID_STATE, wrong))?;
+        *self.committed = state.ok_or_else(|| Fault::new(SS_INVALID_STATE, wrong))?;
         self.tried = false;
         Ok(())
     }

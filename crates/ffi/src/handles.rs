@@ -20,7 +20,7 @@ const CHUNKS: usize = 21;
 
 struct Slot {
     generation: u32,
-    contact: Option<Box<Held>>,
+    contact: Option<Held>,
 }
 
 type Chunk = Box<[Mutex<Slot>]>;
@@ -61,7 +61,7 @@ pub(crate) fn insert(contact: Held) -> Result<usize, Fault> {
         .ok_or_else(|| Fault::new(SS_INTERNAL, "there are too many contacts"))?
         .get_or_init(|| (0..FIRST_CHUNK << chunk).map(|_| Mutex::new(Slot { generation: 1, contact: None })).collect());
     let mut slot = slots[offset].lock().unwrap_or_else(PoisonError::into_inner);
-    slot.contact = Some(Box::new(contact));
+    slot.contact = Some(contact);
     Ok((slot.generation as usize) << 32 | (index + 1))
 }
 
@@ -90,7 +90,7 @@ fn slot(handle: usize) -> Result<MutexGuard<'static, Slot>, Fault> {
 /// Works on the contact of a handle.
 pub(crate) fn with<R>(handle: usize, work: impl FnOnce(&mut Held) -> Result<R, Fault>) -> Result<R, Fault> {
     let mut slot = slot(handle)?;
-    slot.contact.as_deref_mut().map_or_else(|| Err(Fault::new(SS_NO_CONTACT, "no contact")), work)
+    slot.contact.as_mut().map_or_else(|| Err(Fault::new(SS_NO_CONTACT, "no contact")), work)
 }
 
 /// Ends the contact of a handle.

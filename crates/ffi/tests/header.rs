@@ -87,7 +87,7 @@ fn header() -> String {
                 } else if let Some((member, kind)) = line.strip_prefix("pub ").and_then(|line| line.split_once(": ")) {
                     let kind = kind.trim_end_matches(',');
                     let words = comment(&std::mem::take(&mut about), "    ");
-                    write!(members, "{words}    {};\n", declared(member, kind)).unwrap();
+                    writeln!(members, "{words}    {};", declared(member, kind)).unwrap();
                 }
             }
             if members.is_empty() {
