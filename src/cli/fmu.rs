@@ -64,6 +64,7 @@ impl Fmu {
         let setup = request.check().map_err(Refusal::from)?.setup;
         let refused = |error: Error| format!("this contact is not available as an FMU: {error}");
         let contact = Contact::new(setup).map_err(refused)?;
+        contact.check_elastic("an FMU").map_err(refused)?;
         // One whose load cannot change is refused here and not by each master.
         let press = Some(Normal::Indentation(contact.indentation()));
         contact.clone().apply(&Move { normal: press, ..Move::default() }).map_err(refused)?;

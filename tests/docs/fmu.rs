@@ -39,4 +39,7 @@ fn what_cannot_be_an_fmu_is_refused_in_words() {
     assert!(refusal(&example, &["--library", "absent.so"]).contains("absent.so"));
     assert!(refusal("{}", &[]).contains("profile"));
     assert!(refusal(&example.replace("0.3", "-1"), &[]).contains("/friction"));
+    let memory = example.replacen('{', r#"{"prony": [{"ratio": 0.5, "time": 1.0}], "#, 1);
+    let said = refusal(&memory, &[]);
+    assert!(said.contains("an FMU"), "{said}");
 }
