@@ -141,6 +141,21 @@ pub(crate) const PRONY_TERMS: RangeInclusive<usize> = count(&range::PRONY_TERMS)
 /// range itself.
 struct Pulling(Range);
 
+impl Preload {
+    /// Notes a preload that pulls, as it may where the bodies adhere.
+    pub(crate) fn check_pressing(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        match self {
+            Preload::NormalForce(force) => {
+                Limit::check(&range::NORMAL_FORCE, force, at.member("normal_force"), faults);
+            }
+            Preload::Indentation(depth) => {
+                Limit::check(&range::PRELOAD_INDENTATION, depth, at.member("indentation"), faults);
+            }
+            Preload::ContactRadius(_) => {}
+        }
+    }
+}
+
 impl Limit<f64> for Pulling {
     fn keywords(&self) -> Value {
         Limit::<f64>::keywords(&Range { min: -self.0.max, ..self.0 })
@@ -213,16 +228,7 @@ impl ContactDefinition {
         }
         let preload = (&self.preload).into();
         if self.adhesion.is_none() {
-            let at = at.member("preload");
-            match self.preload {
-                Preload::NormalForce(force) => {
-                    Limit::check(&range::NORMAL_FORCE, &force, at.member("normal_force"), faults)
-                }
-                Preload::Indentation(depth) => {
-                    Limit::check(&range::PRELOAD_INDENTATION, &depth, at.member("indentation"), faults)
-                }
-                Preload::ContactRadius(_) => {}
-            }
+            self.preload.check_pressing(at.member("preload"), faults);
         }
         let (mut profile, elasticity) = (profile?, elasticity?);
         if let Some(bulk) = &self.bulk {

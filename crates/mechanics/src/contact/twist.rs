@@ -61,7 +61,7 @@ impl Contact {
     ///
     /// ```
     #[doc = include_str!("../example.txt")]
-    /// use stickslip_mechanics::{Body, Elasticity};
+    /// use stickslip_mechanics::Body;
     ///
     /// let bodies = Elasticity::against_rigid(Body::new(3e6, 0.5)?);
     /// let contact = Contact::new(Setup { elasticity: bodies, ..setup })?;

@@ -36,7 +36,7 @@ const LEAST_TOLERANCE: f64 = 1e-6;
 /// assert!(contact.check_elastic("wear").is_err() && !contact.beyond_annulus());
 /// assert!(contact.count_and_steps().is_some_and(|(count, steps)| count > 0 && steps > 0));
 /// // Let go, the surface of the contact is a dent that the indenter has left.
-/// contact.apply(&Move { normal: Some(Normal::Indentation(5e-5)), ..Move::default() })?;
+/// contact.apply(&Move { normal: Some(Normal::Indentation(1e-5)), ..Move::default() })?;
 /// assert_eq!(contact.normal_force(), 0.0);
 /// # Ok::<(), stickslip_mechanics::Error>(())
 /// ```

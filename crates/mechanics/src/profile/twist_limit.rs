@@ -102,11 +102,13 @@ impl Twisted<'_> {
         let cubed = |square: DoubleDouble| self.even(square);
         // L^4 of xi = x^3/(3 L^2), L the radius.
         let fourth = self.edge.value() * self.edge.value();
+        // The square of a radius that is a double: a vertical edge is known by it to the last bit.
+        let top = StressRadius::new(cubed(self.edge).value().sqrt());
         for (index, stretch) in stretches.iter().enumerate() {
-            let to = stretches.get(index + 1).map_or(self.edge, |next| next.from);
+            let to = stretches.get(index + 1).map_or(top.square, |next| cubed(next.from));
             let (from, kink) = (cubed(stretch.from), stretch.kink.powi(3) / (3.0 * self.edge.value()));
             let base = stretch.from.value();
-            divide((from, cubed(to)), stretch.powers, |square, width, powers| {
+            divide((from, to), stretch.powers, |square, width, powers| {
                 let slope = |t: f64| {
                     let sigma = ((square - from).value() + t * t) * 9.0 * fourth;
                     let root = (base * base * base + sigma).cbrt();
@@ -118,19 +120,19 @@ impl Twisted<'_> {
                 even.push(fitted(kink, square, width, powers, slope));
             });
         }
-        let even = Cells::new(even, Some(cubed(self.edge)));
+        let even = Cells::new(even, Some(top.square));
         let kind = if self.step > 0.0 { EndKind::Edge } else { EndKind::Unknown };
-        let limit = |cells: Cells, place: &dyn Fn(DoubleDouble) -> DoubleDouble| {
+        let limit = |cells: Cells, end: f64, place: &dyn Fn(DoubleDouble) -> DoubleDouble| {
             let at =
                 |square: DoubleDouble| StressRadius { radius: place(square).value().sqrt(), square: place(square) };
             let own = profile.shape().map_or_else(|| Kinks::from([]), Shape::kinks);
             let own = own.iter().filter(|kink| kink.at.square > core && kink.at.square < self.edge);
             let own = own.map(|kink| Kink { at: at(kink.at.square), powers: kink.powers.and(Powers::Odd) });
             let kinks = [Kink { at: at(core), powers: Powers::Odd }].into_iter().chain(own).collect();
-            let end = End { radius: place(self.edge).value().sqrt(), kind };
+            let end = End { radius: end, kind };
             TwistLimit { profile: Arc::clone(profile), end, kinks, stages: Stages::whole(cells) }
         };
-        [limit(flat, &|square| square), limit(even, &cubed)]
+        [limit(flat, self.radius(), &|square| square), limit(even, top.radius, &cubed)]
     }
 
     /// xi^2, m^2, of x^2.

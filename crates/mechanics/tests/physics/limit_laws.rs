@@ -5,6 +5,8 @@ use proptest::prelude::{Strategy, prop, proptest};
 use stickslip_mechanics::profile::{Cone, FlatPunch, PowerLaw, TruncatedCone};
 use stickslip_mechanics::{Contact, Elasticity, Friction, Move, Preload, Profile, Setup, Sphere, Tangential};
 
+use crate::support::config;
+
 /// A contact under a law, and whether it is twisted.
 #[derive(Clone, Debug)]
 struct Scene {
@@ -62,7 +64,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
 }
 
 proptest! {
-    #![proptest_config(proptest::test_runner::Config::with_cases(60))]
+    #![proptest_config(config(60))]
 
     #[test]
     fn loops_close_energy_is_kept_and_work_never_falls(

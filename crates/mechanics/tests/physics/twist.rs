@@ -110,6 +110,13 @@ fn limit_torques_are_the_moments_of_friction() {
         let limit = contact.twisting().unwrap().normal_force();
         near(limit, of_load * FRICTION * contact.normal_force() * contact.contact_radius(), 1e-11, name);
     }
+    // Whether its radius has a square that is a double or not.
+    for index in 1..60 {
+        let radius = 0.013 * f64::from(index);
+        let contact = contact(Profile::FlatPunch(FlatPunch::new(radius).unwrap()));
+        let limit = contact.twisting().unwrap().normal_force();
+        near(limit, 0.25 * PI * FRICTION * contact.normal_force() * radius, 1e-11, "punch");
+    }
     // A flat punch sticks up to 2/3 of mu F_N a.
     let punch = contact(Profile::FlatPunch(FlatPunch::new(1.0).unwrap()));
     let limit = FRICTION * punch.normal_force();

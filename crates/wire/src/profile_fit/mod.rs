@@ -187,6 +187,7 @@ impl Document for ProfileFitRequest {
             Some(Centre::Auto(Auto::Auto)) | None => None,
         };
         let load = self.load.as_ref().and_then(|load| {
+            load.preload.check_pressing(root.member("load").member("preload"), faults);
             let elasticity = load.material.check(root.member("load").member("material"), faults)?;
             Some((elasticity, load.friction, (&load.preload).into()))
         });
