@@ -134,8 +134,9 @@ int ss_commit(ss_contact *contact);
 /* Discards the last trial, if there is one. */
 int ss_revert(ss_contact *contact);
 
-/* Steps `count` contacts of one kind, one after the other, each as ss_step does: contact i to normal[i] and to its
- * numbers of `displacement`; its forces follow those of contact i - 1. `normal` may be NULL under SS_CONSTANT_LOAD.
+/* Steps `count` contacts of one kind, one after the other, each as ss_step does: contact i to `normal[i]` and to
+ * its numbers of `displacement`; its forces follow those of contact i - 1. `normal` may be NULL under
+ * SS_CONSTANT_LOAD.
  * Ends at the first contact that fails; `done` receives how many were stepped, and may be NULL. Threads may call it at
  * once for different contacts.
  * Pointers:

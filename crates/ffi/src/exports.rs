@@ -260,8 +260,9 @@ pub extern "C" fn ss_revert(contact: *mut ss_contact) -> c_int {
     })
 }
 
-/// Steps `count` contacts of one kind, one after the other, each as ss_step does: contact i to normal[i] and to its
-/// numbers of `displacement`; its forces follow those of contact i - 1. `normal` may be NULL under SS_CONSTANT_LOAD.
+/// Steps `count` contacts of one kind, one after the other, each as ss_step does: contact i to `normal[i]` and to
+/// its numbers of `displacement`; its forces follow those of contact i - 1. `normal` may be NULL under
+/// SS_CONSTANT_LOAD.
 /// Ends at the first contact that fails; `done` receives how many were stepped, and may be NULL. Threads may call it at
 /// once for different contacts.
 ///
