@@ -231,12 +231,19 @@ def _sweep(result: Record) -> Table:
     return columns, {}
 
 
+def _tractions(result: Any) -> Table:
+    """Tractions along x; the ends of the stick zone are no column."""
+    columns = {name: getattr(result, name) for name in ("x", "pressure", "shear")}
+    return columns, _units(columns, result.schema)
+
+
 _REPLIES: dict[str, Callable[[Any], Table]] = {
     "CycleReply": _cycle_reply,
     "FrettingReply": _rating,
     "LoopPage": _loop,
     "PlanarReply": _simulation,
     "ProfileFitReply": _scan,
+    "RollingReply": _tractions,
     "Residual": _peaks,
     "SimulateReply": _simulation,
     "SweepReply": _sweep,
