@@ -302,19 +302,13 @@ impl Contact {
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),
             stick_radius,
-            stick_centre: None,
             regime,
             dissipated_energy: self.dissipated.value(),
             elastic_energy: (2.0 * self.elasticity.g_star() * scale * scale * self.history.energy()).max(0.0),
             memory_depth: self.memory_depth(),
             electrical_conductance: conductance.electrical,
             thermal_conductance: conductance.thermal,
-            time: None,
-            viscous_work: None,
-            surface_energy: None,
-            adhesion_loss: None,
-            twist: None,
-            torque: None,
+            ..State::default()
         };
         self.with_twist(self.with_surfaces(State { stick_centre: self.stick_centre(&state), ..state }))
     }

@@ -161,7 +161,7 @@ pub enum Regime {
 }
 
 /// The state after a move. Positive displacement gives positive force.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     /// Tangential displacement U of the indenter, m.
     pub displacement: f64,

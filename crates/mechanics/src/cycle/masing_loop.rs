@@ -5,11 +5,11 @@
 //! this loop interrupted (Madelung); a branch from the only turning point ends at its mirror image, on the first
 //! loading curve.
 
+use super::slipped;
 use crate::contact::Contact;
 use crate::contact::normal::load;
 use crate::numerics::chebyshev::{self, Points, TWENTY_FOUR};
 use crate::numerics::double_double::DoubleDouble;
-use crate::profile::Ring;
 
 /// Halvings of a piece of the first loading curve, and points in all: beyond, the curve is evaluated itself.
 const HALVINGS: usize = 30;
@@ -80,9 +80,8 @@ impl<'a> FirstLoading<'a> {
 
     /// The force, N, at a displacement above zero that does not slide, m.
     fn exact(&self, displacement: f64) -> f64 {
-        let (profile, edge) = (&self.contact.indenter, *self.contact.history.edge());
-        let inner = profile.point(edge.level - self.contact.scaled(DoubleDouble::from(displacement)));
-        self.contact.force_unit() * load(profile, &Ring::between(inner, edge))
+        let ring = slipped(self.contact, self.contact.scaled(DoubleDouble::from(displacement)));
+        self.contact.force_unit() * load(&self.contact.indenter, &ring)
     }
 }
 

@@ -64,6 +64,12 @@ pub struct SteadyCycle<'a> {
     slide: f64,
 }
 
+/// The ring that has slipped when a contact has been moved from rest by this much, scaled, m.
+fn slipped(contact: &Contact, depth: DoubleDouble) -> Ring {
+    let edge = *contact.history.edge();
+    Ring::between(contact.indenter.point(edge.level - depth), edge)
+}
+
 impl<'a> SteadyCycle<'a> {
     /// The cycle of a displacement amplitude, m.
     ///
@@ -150,11 +156,7 @@ impl<'a> SteadyCycle<'a> {
 
     fn new(contact: &'a Contact, depth: DoubleDouble, slide: f64) -> SteadyCycle<'a> {
         let edge = *contact.history.edge();
-        let ring = if edge.level.value() > 0.0 {
-            Ring::between(contact.indenter.point(edge.level - depth), edge)
-        } else {
-            Ring::default()
-        };
+        let ring = if edge.level.value() > 0.0 { slipped(contact, depth) } else { Ring::default() };
         let moments = if ring.depth > 0.0 { contact.indenter.moments(&ring) } else { Moments::default() };
         SteadyCycle {
             contact,
@@ -173,7 +175,7 @@ impl<'a> SteadyCycle<'a> {
         let edge = *contact.history.edge();
         let (own, machine) = (contact.scale(), compliance * contact.force_unit());
         let beyond = |depth: f64| {
-            let ring = Ring::between(contact.indenter.point(edge.level - DoubleDouble::from(depth)), edge);
+            let ring = slipped(contact, DoubleDouble::from(depth));
             let moved = own * depth + machine * load(&contact.indenter, &ring);
             (moved - amplitude, own + machine * ring.inner.radius)
         };

@@ -341,7 +341,6 @@ impl Springs {
             indentation: self.indentation,
             normal_force: self.normal_force(),
             contact_radius: self.contact_radius(),
-            stick_centre: None,
             stick_radius: if self.indentation < 0.0 { 0.0 } else { self.stick_radius },
             regime,
             dissipated_energy: self.dissipated,
@@ -349,12 +348,7 @@ impl Springs {
             memory_depth: self.in_contact().count(),
             electrical_conductance: conductance.electrical,
             thermal_conductance: conductance.thermal,
-            time: None,
-            viscous_work: None,
-            surface_energy: None,
-            adhesion_loss: None,
-            twist: None,
-            torque: None,
+            ..State::default()
         }
     }
 }

@@ -6,6 +6,8 @@
 //! so v_x -+ m v_z relaxes as if it were free, however w moves. A step that is straight in d and U is therefore exact
 //! for each spring, but for what it does more than once in the step: it touches or leaves once and begins to slip once.
 
+use std::borrow::Cow;
+
 use super::prony::{Kernel, MOST_TERMS, Prony};
 use crate::indenter::Indenter;
 use crate::numerics::roots::{between, within};
@@ -93,6 +95,11 @@ impl Step<'_> {
         self.prony.kernel(part * self.time)
     }
 
+    /// That of a part of the step; of the whole step it is known.
+    fn kernel_over(&self, part: f64) -> Cow<'_, Kernel> {
+        if part < 1.0 { Cow::Owned(self.kernel(part)) } else { Cow::Borrowed(&self.kernel) }
+    }
+
     fn at(&self, level: f64, part: f64) -> f64 {
         let [from, to] = self.indentation;
         from + part * (to - from) - level
@@ -176,13 +183,7 @@ impl Step<'_> {
     /// `end`, where p is `p`. The slip, the friction work and the work of q.
     fn slide(&self, spring: &mut Tangential<'_>, [begin, end]: [f64; 2], way: f64, p: f64) -> [f64; 3] {
         let (prony, scale) = (self.prony, self.scale);
-        let own;
-        let kernel = if end - begin < 1.0 {
-            own = self.kernel(end - begin);
-            &own
-        } else {
-            &self.kernel
-        };
+        let kernel = &*self.kernel_over(end - begin);
         let ends = [spring.u, spring.u + way];
         let trial = prony.pressed(kernel, spring.v, ends);
         let bound = scale * p;
@@ -213,13 +214,7 @@ impl Step<'_> {
             prony.press(&kernel, spring.z, [at(begin), at(from)]);
         }
         let first = (at(from) - prony.kept(spring.z)).max(0.0);
-        let own;
-        let kernel = if end - from < 1.0 {
-            own = self.kernel(end - from);
-            &own
-        } else {
-            &self.kernel
-        };
+        let kernel = &*self.kernel_over(end - from);
         let factor = sign * scale;
         spring.v.iter_mut().zip(&*spring.z).for_each(|(v, z)| *v -= factor * z);
         prony.relax(kernel, spring.v);
