@@ -259,43 +259,31 @@ impl Study<'_> {
     }
 
     /// Climbs along the coordinates in turn, in steps that are halved where none leads up, until they are so small: the
-    /// best place, and the gain of the last two rounds.
+    /// best place, and the gain of the last two rounds. What a round has won is tried once more as a whole (Hooke and
+    /// Jeeves 1961), so that a climb along a ridge gains speed.
     fn climb(
         &mut self,
         measure: usize,
         start: Coordinates,
         (mut share, finest): (f64, f64),
     ) -> Result<(Candidate, f64), Error> {
-        let axes = if self.is_flat(measure) { 2 } else { 3 };
         let mut best = self.candidate_at(measure, start, None)?;
-        let (mut gains, mut turns) = ([0.0; 2], 0);
+        let (mut gains, mut turns, mut ahead) = ([0.0; 2], 0, None);
         while share >= finest {
-            let before = best.found.value;
-            for (axis, first_step) in FIRST_STEPS.into_iter().enumerate().take(axes) {
-                if axis == 1 && self.along_line() {
-                    continue;
-                }
-                let middle = best;
-                let mut sides = [None; 2];
-                for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
-                    *side = self.step(measure, &middle, axis, sign * share * first_step)?;
-                    if let Some(candidate) = side.filter(|candidate| candidate.found.value > best.found.value) {
-                        best = candidate;
-                    }
-                }
-                if let [Some(right), Some(left)] = sides {
-                    let (rise, fall) = (right.found.value - left.found.value, right.found.value + left.found.value);
-                    let bend = fall - 2.0 * middle.found.value;
-                    let vertex = if bend < 0.0 { -0.5 * rise / bend } else { 0.0 };
-                    if vertex.abs() > 0.02 && vertex.abs() < 1.0 {
-                        let length = vertex * share * first_step;
-                        let candidate = self.step(measure, &middle, axis, length)?;
-                        best = candidate.filter(|candidate| candidate.found.value > best.found.value).unwrap_or(best);
-                    }
+            let mut round = best;
+            if let Some(ahead) = ahead {
+                let ahead = self.candidate_at(measure, ahead, best.found.plane)?;
+                if ahead.found.value.is_finite() {
+                    round = self.explored(measure, ahead, share)?;
                 }
             }
-            let gain = best.found.value - before;
-            gains = [gains[1], gain];
+            if round.found.value <= best.found.value {
+                round = self.explored(measure, best, share)?;
+            }
+            let gain = round.found.value - best.found.value;
+            let again = |axis: usize| 2.0 * round.at[axis] - best.at[axis];
+            ahead = (gain > 0.0).then(|| [again(0).max(0.0), again(1).clamp(0.0, PI), again(2).max(0.0)]);
+            (best, gains) = (round, [gains[1], gain]);
             if gain <= 0.05 * self.tolerance * best.found.value.abs() {
                 share *= 0.5;
             }
@@ -309,6 +297,36 @@ impl Study<'_> {
             }
         }
         Ok((best, gains[0] + gains[1]))
+    }
+
+    /// The best of a place and of those that one step along each coordinate in turn, or the vertex of the parabola
+    /// through three places, leads to.
+    fn explored(&mut self, measure: usize, mut best: Candidate, share: f64) -> Result<Candidate, Error> {
+        let axes = if self.is_flat(measure) { 2 } else { 3 };
+        for (axis, first_step) in FIRST_STEPS.into_iter().enumerate().take(axes) {
+            if axis == 1 && self.along_line() {
+                continue;
+            }
+            let middle = best;
+            let mut sides = [None; 2];
+            for (side, sign) in sides.iter_mut().zip([1.0, -1.0]) {
+                *side = self.step(measure, &middle, axis, sign * share * first_step)?;
+                if let Some(candidate) = side.filter(|candidate| candidate.found.value > best.found.value) {
+                    best = candidate;
+                }
+            }
+            if let [Some(right), Some(left)] = sides {
+                let (rise, fall) = (right.found.value - left.found.value, right.found.value + left.found.value);
+                let bend = fall - 2.0 * middle.found.value;
+                let vertex = if bend < 0.0 { -0.5 * rise / bend } else { 0.0 };
+                if vertex.abs() > 0.02 && vertex.abs() < 1.0 {
+                    let length = vertex * share * first_step;
+                    let candidate = self.step(measure, &middle, axis, length)?;
+                    best = candidate.filter(|candidate| candidate.found.value > best.found.value).unwrap_or(best);
+                }
+            }
+        }
+        Ok(best)
     }
 
     /// The place a step along one coordinate away, unless it leaves the body or is the same.

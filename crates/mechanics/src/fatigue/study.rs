@@ -378,7 +378,9 @@ impl<'a> Study<'a> {
             let (stress, off) = if self.averaged > 0.0 {
                 mean_over_depth(&field.0, *place, self.averaged, averaging)
             } else {
-                (self.stress(&field.0, *place, shared, &mut sums), 0.0)
+                // One that other places find again.
+                let lasting = shared && Rc::strong_count(&field) > 1;
+                (self.stress(&field.0, *place, lasting, &mut sums), 0.0)
             };
             averaging_error = averaging_error.max(off);
             Ok(self.looked_at(&field, stress, step, (radius, surface)))
@@ -387,10 +389,10 @@ impl<'a> Study<'a> {
         Ok(curve)
     }
 
-    /// The stress at a place at an instant that many places share, or that it has for itself. By the sums of the place,
-    /// which are kept, unless a profile of many cells is asked for at shared instants alone.
-    fn stress(&self, field: &Subsurface, place: [f64; 3], shared: bool, sums: &mut Option<PlaceSums>) -> Stress {
-        if (!shared || self.has_few_cells) && sums.is_none() && field.contact.memory_depth() <= FEW_RINGS {
+    /// The stress at a place in a field that lasts for others, or in one that it has for itself. By the sums of the
+    /// place, which are kept, unless a profile of many cells is asked for in lasting fields alone.
+    fn stress(&self, field: &Subsurface, place: [f64; 3], lasting: bool, sums: &mut Option<PlaceSums>) -> Stress {
+        if (!lasting || self.has_few_cells) && sums.is_none() && field.contact.memory_depth() <= FEW_RINGS {
             *sums = field.place_sums(place, self.radius);
         }
         match sums {

@@ -400,39 +400,3 @@ fn a_search_and_a_rating_can_be_interrupted() {
     assert_eq!(study.worst(), Err(Error::Interrupted));
     assert_eq!(study.rate_all(&[[5e-5, 0.0, 0.0]]), Err(Error::Interrupted));
 }
-
-/// The largest of each measure over a grid of one half of the body.
-fn over_grid(cycle: &Cycle, measures: &[Measure], radius: f64, [radii, angles, depths]: [u32; 3]) -> Vec<f64> {
-    let mut places = Vec::new();
-    for (r, (angle, depth)) in
-        (0..=radii).flat_map(|r| (0..=angles).flat_map(move |angle| (0..=depths).map(move |depth| (r, (angle, depth)))))
-    {
-        let share = |index: u32, count: u32| f64::from(index) / f64::from(count);
-        let (sin, cos) = (std::f64::consts::PI * share(angle, angles)).sin_cos();
-        let r = 1.25 * radius * share(r, radii);
-        places.push([r * cos, r * sin, 1.2 * radius * share(depth, depths).powi(2)]);
-    }
-    let ratings = rated(cycle, measures.to_vec(), 1e-3, &places);
-    ratings.largest.iter().map(|largest| largest.map_or(0.0, |largest| largest.rated.value)).collect()
-}
-
-#[test]
-fn no_place_of_a_grid_beats_the_worst_of_the_body() {
-    let mut random = Random(7);
-    for case in 0..cases(3) {
-        let (contact, moves, _) = any_cycle(&mut random);
-        let measures = if case % 3 == 0 { of_stress() } else { of_stress()[..2].to_vec() };
-        let Ok(cycle) = Cycle::new(&contact, &moves, &|| true) else { continue };
-        let mut study = Study::new(&cycle, BODY, None, measures.clone(), 1e-3, &|| true).unwrap();
-        let worst = study.worst().unwrap();
-        let grid = if measures.len() > 2 { [13, 6, 3] } else { [26, 12, 6] };
-        for ((measure, found), most) in
-            measures.iter().zip(&worst).zip(over_grid(&cycle, &measures, study.contact_radius(), grid))
-        {
-            let share = most / found.rated.value;
-            println!("{measure:?}: {:e} at {:?}, {share:.5} on the grid", found.rated.value, found.place);
-            assert!(most <= found.rated.value + found.rated.error, "{measure:?}: {found:?} below {most:e}");
-            assert!(found.rated.error <= 2e-3 * found.rated.value, "{measure:?}: {found:?}");
-        }
-    }
-}

@@ -60,3 +60,4 @@ mod twist;
 mod viscoelastic;
 mod wear;
 mod where_parts_meet;
+mod worst_place;
