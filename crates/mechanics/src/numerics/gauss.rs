@@ -52,6 +52,33 @@ const fn both_halves<const N: usize>(lower: &[(f64, f64)]) -> [(f64, f64); N] {
     points
 }
 
+/// The weights of the integrals from each point of a rule over 0..1 to 1, of the polynomial through all its points.
+///
+/// With the coefficients (2k + 1) sum w f P_k of Legendre's polynomials, of which int_x^1 P_k = (P_(k-1)(x) -
+/// P_(k+1)(x))/(2k + 1); it errs like rho^(-n).
+pub(crate) const fn to_the_end<const N: usize>(rule: &[(f64, f64); N]) -> [[f64; N]; N] {
+    let mut weights = [[0.0; N]; N];
+    let (mut from, mut to) = (0, 0);
+    while from < N {
+        while to < N {
+            let [x, y] = [2.0 * rule[from].0 - 1.0, 2.0 * rule[to].0 - 1.0];
+            let ([mut before, mut here], [mut other_before, mut other]) = ([1.0, x], [1.0, y]);
+            let (mut sum, mut k) = (0.5 * (1.0 - x), 1.0);
+            while k < N as f64 {
+                let next = ((2.0 * k + 1.0) * x * here - k * before) / (k + 1.0);
+                sum += 0.5 * (before - next) * other;
+                (before, here) = (here, next);
+                (other_before, other) = (other, ((2.0 * k + 1.0) * y * other - k * other_before) / (k + 1.0));
+                k += 1.0;
+            }
+            weights[from][to] = rule[to].1 * sum;
+            to += 1;
+        }
+        (from, to) = (from + 1, 0);
+    }
+    weights
+}
+
 /// The integral of a function from zero to `width` by a rule.
 pub(crate) fn integral(rule: &[(f64, f64)], width: f64, function: impl Fn(f64) -> f64) -> f64 {
     width * rule.iter().map(|(at, weight)| weight * function(width * at)).sum::<f64>()

@@ -292,20 +292,29 @@ impl LineContact {
         }
     }
 
-    /// The level up to s, m: the integral of [`LineContact::rise`].
+    /// The level up to s, m.
     fn level_to(&self, s: f64) -> f64 {
+        self.level_and_rise(s)[0]
+    }
+
+    /// The level up to s, m, which is the integral of [`LineContact::rise`], and that.
+    fn level_and_rise(&self, s: f64) -> [f64; 2] {
         if s <= 0.0 {
-            return 0.0;
+            return [0.0; 2];
         }
         match self.specimen {
-            Specimen::Cylinder { radius } => 0.25 * s * s * (2.0 * self.log_at(s) + 1.0) / radius,
+            Specimen::Cylinder { radius } => {
+                let log = self.log_at(s);
+                [0.25 * s * s * (2.0 * log + 1.0) / radius, s * log / radius]
+            }
             Specimen::RoundedPad { flat_half_width: b, .. } if s < 0.5 * b => {
-                integral(&TWELVE_POINTS, s, |s| self.rise(s))
+                [integral(&TWELVE_POINTS, s, |s| self.rise(s)), self.rise(s)]
             }
             Specimen::RoundedPad { flat_half_width: b, edge_radius } => {
-                let angle = s.atan2(b);
-                let beyond = 0.25 * (b * b + s * s) * angle - 0.75 * b * s + 0.5 * b * b * angle;
-                FRAC_2_PI * (self.load_to(s) * self.log_at(s) + beyond / edge_radius)
+                let (angle, log, square) = (s.atan2(b), self.log_at(s), b * b + s * s);
+                let (load, beyond) =
+                    (0.5 * (square * angle - b * s), 0.25 * (square + 2.0 * b * b) * angle - 0.75 * b * s);
+                [load * log + beyond, log * s * angle].map(|value| FRAC_2_PI * value / edge_radius)
             }
         }
     }
@@ -314,7 +323,7 @@ impl LineContact {
     fn side_of_level(&self, level: f64) -> f64 {
         // Roots, since the product of a small radius and a small level may underflow.
         let about = (self.curvature_radius().sqrt() * level.max(0.0).sqrt()).min(self.last_side());
-        self.side(level, level / (FRAC_2_PI * self.log_at(about)), |s| [self.level_to(s), self.rise(s)])
+        self.side(level, level / (FRAC_2_PI * self.log_at(about)), |s| self.level_and_rise(s))
     }
 
     /// s at which an increasing function with its slope has a value, no further than where contacts end, from what

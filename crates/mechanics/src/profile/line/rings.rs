@@ -1,14 +1,18 @@
 //! The integrals of a line contact over a ring of levels, each to round-off of itself however thin the ring is.
 //!
 //! With y(s) the level, dX = X(s) - X(inner) and h = y(outer) - y: int h dX = int dX dy and int h^2 dX = 2 int h dX dy,
-//! all of whose factors are positive. The rule of twelve points serves panels that are no longer than their distance
-//! from s = 0, where a cylinder has a logarithm, or than b, beside whose i b a pad has one.
+//! all of whose factors are positive. The rule of twenty points, and the integrals of the polynomial through them,
+//! serve panels that are no longer than their distance from s = 0, where a cylinder has a logarithm, or than b, beside
+//! whose i b a pad has one.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::{LineContact, Specimen};
-use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};
+use crate::numerics::gauss::{TWENTY_POINTS, to_the_end};
 use crate::profile::Moments;
+
+/// The weights of the integrals from each point of the rule to the end of a panel.
+static TO_THE_END: [[f64; 20]; 20] = to_the_end(&TWENTY_POINTS);
 
 impl LineContact {
     /// The moments of the ring from s = `inner` to `outer`, m, over which the level rises by `depth`, m.
@@ -31,52 +35,40 @@ impl LineContact {
         }
         ends.push(inner);
         if ends.len() == 2 {
-            return self.of_panel(inner, outer, depth);
+            // The level knows the depth of a thin ring better than its ends do.
+            let (moments, rise) = self.of_panel(inner, outer);
+            let share = depth / rise;
+            return Moments { first: share * moments.first, second: share * share * moments.second, ..moments };
         }
         let panels = ends.windows(2).rev();
         panels.fold(Moments::default(), |sum, panel| {
-            let [high, low] = [panel[0], panel[1]];
-            let depth = self.rise_over(low, high - low);
-            Moments::stack(sum, self.of_panel(low, high, depth), depth)
+            let (moments, rise) = self.of_panel(panel[1], panel[0]);
+            Moments::stack(sum, moments, rise)
         })
     }
 
-    fn of_panel(&self, inner: f64, outer: f64, depth: f64) -> Moments {
+    /// The moments of a panel, and by how much the level rises over it, m.
+    fn of_panel(&self, inner: f64, outer: f64) -> (Moments, f64) {
         let (width, b) = (outer - inner, self.flat_half_width());
         let square = b * b + inner * inner;
         // ln(t/t(inner)); X - X(inner) is the unit times it over ln(l/t).
         let log = self.log_at(inner);
         let unit = 0.25 * PI * self.length / log;
         let widened = |step: f64| 0.5 * (step * (2.0 * inner + step) / square).ln_1p();
-        let mut moments = Moments { width: unit * widened(width) / self.log_at(outer), ..Moments::default() };
-        for &(share, weight) in self.rule(inner, width) {
-            let (step, rest) = (width * share, width * (1.0 - share));
-            let (s, widened) = (inner + step, widened(step));
+        let (mut rises, mut terms) = ([0.0; 20], [0.0; 20]);
+        for (index, (share, weight)) in TWENTY_POINTS.into_iter().enumerate() {
+            let step = width * share;
+            let (gamma, widened) = (FRAC_2_PI * width * self.gamma(inner + step), widened(step));
+            rises[index] = gamma * (log - widened);
             // The logarithm of X cancels that of the level.
-            let term = width * weight * FRAC_2_PI * self.gamma(s) * unit * widened;
-            let left = match self.specimen {
-                Specimen::Cylinder { radius } => {
-                    let twice = step * (inner + s) * (2.0 * log + 1.0) - 2.0 * s * s * widened;
-                    depth - 0.25 * twice / radius
-                }
-                // The shorter of the two ways keeps its digits.
-                Specimen::RoundedPad { .. } if share < 0.5 => depth - self.rise_over(inner, step),
-                Specimen::RoundedPad { .. } => self.rise_over(s, rest),
-            };
-            moments.first += term;
-            moments.second += 2.0 * left * term;
+            terms[index] = weight * gamma * unit * widened;
         }
-        moments
-    }
-
-    /// By how much the level of a pad rises over a step from s, m, within a panel.
-    fn rise_over(&self, s: f64, step: f64) -> f64 {
-        integral(self.rule(s, step), step, |step| self.rise(s + step))
-    }
-
-    /// The rule of a step from s, m, within a panel: eight points are as good as twelve where nothing singular is near.
-    fn rule(&self, s: f64, step: f64) -> &'static [(f64, f64)] {
-        if step > 0.4 * self.width_at(s) { &TWELVE_POINTS } else { &EIGHT_POINTS }
+        let mut moments = Moments { width: unit * widened(width) / self.log_at(outer), ..Moments::default() };
+        for (left, term) in TO_THE_END.iter().zip(terms) {
+            moments.first += term;
+            moments.second += 2.0 * term * left.iter().zip(rises).map(|(weight, rise)| weight * rise).sum::<f64>();
+        }
+        (moments, TWENTY_POINTS.iter().zip(rises).map(|((_, weight), rise)| weight * rise).sum())
     }
 
     /// In closed form, where the ring is thick: int X dy = (L/2) G, int G dy = (G^2/pi)(ln(l/t) + 1/4).
