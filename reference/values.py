@@ -15,10 +15,12 @@ from pathlib import Path
 
 from found.cycles import harmonics, loops
 from found.depth import stress_in_depth
+from found.impact import oblique_impact
+from found.laws import adhesion, relaxation, twist
 from found.lines import line_contact, pad
 from found.normal import normal_contact
 from found.others import conductance, rolling, shear_strength, sliders, wear_limit
-from found.tangential import falling_amplitude, first_loading, oblique_paths, random_turns
+from found.tangential import falling_amplitude, first_loading, oblique_paths, paper_figures, random_turns
 
 FOLDER = Path(__file__).parent
 PROBLEMS = (
@@ -27,6 +29,8 @@ PROBLEMS = (
     oblique_paths,
     random_turns,
     falling_amplitude,
+    paper_figures,
+    oblique_impact,
     loops,
     harmonics,
     line_contact,
@@ -37,6 +41,9 @@ PROBLEMS = (
     conductance,
     sliders,
     rolling,
+    twist,
+    adhesion,
+    relaxation,
 )
 
 

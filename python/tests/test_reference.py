@@ -12,16 +12,21 @@ from stickslip import reference
 
 FOLDER = ROOT / "reference"
 PROBLEMS = reference.read_problems(FOLDER)
+#: Problems of which stickslip states an error: times, and springs with memory.
+NOT_EXACT = {"oblique-impact", "relaxation"}
 
 
 def errors(code: reference.Code) -> dict[str, float | None]:
-    return {problem: error for problem, error, _ in reference.run(code, PROBLEMS)}
+    return {row.problem: row.error for row in reference.run(code, PROBLEMS)}
 
 
 def test_the_package_solves_every_problem() -> None:
     code = reference.code_named("package")
-    assert {name: error for name, error in errors(code).items() if error is None or not error < 1e-10} == {}
-    assert reference.missing(code, PROBLEMS) == []
+    rows = list(reference.run(code, PROBLEMS))
+    assert {row.problem: left for row in rows if (left := reference.shortcomings(row, 1e-10))} == {}
+    # Elsewhere it calls itself exact.
+    assert {row.problem for row in rows if row.stated} == NOT_EXACT
+    assert all(row.stated < 2e-5 for row in rows)
 
 
 def test_the_values_are_those_that_two_ways_agree_on() -> None:

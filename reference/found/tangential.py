@@ -1,7 +1,7 @@
 """A ball on paths along a line."""
 
 import numpy as np
-from mpmath import mpf, pi, sqrt
+from mpmath import mp, mpf, pi, sqrt
 
 from found.common import near, out, problem
 
@@ -265,6 +265,55 @@ def falling_amplitude():
         cases,
         {
             "1e-2": "figures of the paper cannot be distinguished",
+            "1e-4": "a million springs, or a stress in closed form",
+            "1e-8": "the slip history is exact",
+        },
+    )
+
+
+def paper_figures():
+    """The path of Kraft and Pohrt with 20 reversals, at the places of their figures 2 to 4."""
+    ball, count = Ball(10.0), 20
+    a, limit, start = sqrt(ball.d * ball.r), 10 * ball.mu, float(ball.d)
+    path = [float(ball.m * ball.d * (-1) ** k * (1 - mpf(k) / count)) for k in range(count)] + [0.0]
+    peak = ball.mu * 30 / (2 * pi * a * a)
+    radii = [float(f"{float(a * part):.6e}") for part in np.arange(1, 20) / 20]
+    cases = []
+    for name, moves in (
+        ("figures 2 and 4: 20 reversals and back", path),
+        ("figure 3, A: after 6 reversals", path[:6]),
+        ("figure 3, B: from there to the start", [*path[:6], 0.0]),
+    ):
+        ball, forces = Ball(10.0), []
+        for u in moves:
+            ball.move(u)
+            forces.append(ball.force())
+        compared(forces, springs(start, [(start, u) for u in moves], 200_000), limit, name, 5e-7)
+        # Masing's rule: each stroke is twice the first loading over half its way, and none wipes out another here.
+        masing, before = mpf(0), mpf(0)
+        for index, u in enumerate(moves):
+            way, factor = (abs(mpf(u) - before) / (2 if index else 1), 2 if index else 1)
+            share = min(way / (ball.m * ball.d), mpf(1))
+            masing += factor * mp.sign(mpf(u) - before) * limit * (1 - (1 - share) ** (mpf(3) / 2))
+            before = mpf(u)
+            near(1 + forces[index], 1 + masing, 14, name)
+        shear = [ball.shear(r) for r in radii]
+        outputs = {"force": out("N", *forces, scale=limit), "shear": out("Pa", *shear, scale=peak)}
+        inputs = {**BALL, "normal_force": 10.0, "displacements": moves, "radii": radii}
+        cases.append({"name": name, "inputs": inputs, "outputs": outputs})
+    return problem(
+        "paper-figures",
+        "Figures 2 to 4 of Kraft and Pohrt (2016)",
+        BALL_TEXT
+        + "Under constant F_N the ball is moved to each of `displacements`, their equation (20) with 20 reversals."
+        " Asked: the tangential force at each (figure 2), and the shear stress at `radii` after the last (figures 3"
+        " and 4, over mu p_max there). Figure 5 is `largest_shear` of falling-amplitude.",
+        "As in oblique-paths.",
+        "Masing's rule, to 14 digits; " + SPRINGS.replace("400 000", "200 000").replace("2e-7", "5e-7"),
+        ["Kraft & Pohrt 2016, Facta Universitatis, Mechanical Engineering"],
+        cases,
+        {
+            "1e-2": "the figures of the paper cannot be distinguished",
             "1e-4": "a million springs, or a stress in closed form",
             "1e-8": "the slip history is exact",
         },
