@@ -3,6 +3,7 @@
     pip install mpmath numpy
     python values.py            # writes the documents beside this file
     python values.py --check    # computes everything anew and compares; writes nothing
+    python values.py twist      # this one alone
 
 It shares nothing with stickslip, neither code nor results. Every output is computed in a second way that uses other
 formulas, `second` of each document, and nothing is written unless the two agree to the stated digits. Inputs are
@@ -20,6 +21,7 @@ from found.laws import adhesion, relaxation, twist
 from found.lines import line_contact, pad
 from found.normal import normal_contact
 from found.others import conductance, rolling, shear_strength, sliders, wear_limit
+from found.plane import circular_motion
 from found.tangential import falling_amplitude, first_loading, oblique_paths, paper_figures, random_turns
 
 FOLDER = Path(__file__).parent
@@ -31,6 +33,7 @@ PROBLEMS = (
     falling_amplitude,
     paper_figures,
     oblique_impact,
+    circular_motion,
     loops,
     harmonics,
     line_contact,
@@ -60,7 +63,10 @@ def same(found, stored):
 
 
 def main():
+    named = [name for name in sys.argv[1:] if name != "--check"]
     for make in PROBLEMS:
+        if named and make.__name__.replace("_", "-") not in named:
+            continue
         document = make()
         path = FOLDER / f"{document['id']}.json"
         if "--check" in sys.argv[1:]:

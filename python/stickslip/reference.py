@@ -211,6 +211,19 @@ def stickslip(compute: Compute) -> Code:
         widths = [reply["stick"][1] - reply["stick"][0] for reply in replies]
         return {"creep": [reply["creep"] for reply in replies], "stick_width": widths}
 
+    def circular_motion(inputs: Document) -> Document:
+        found: Document = {"force_x": [], "force_y": [], "turn_work": [], STATED: 0.0}
+        contact = effective(inputs)
+        for radius in inputs["radii"]:
+            turns = {"radii": [radius, radius], "turns": 3, "steps_per_turn": 64}
+            reply = simulate(contact, path={"ellipse": turns}, tolerance=1e-3, steps="last")
+            (x, y), accuracy = reply["steps"][-1]["force"], reply["accuracy"]
+            found["force_x"].append(x)
+            found["force_y"].append(y)
+            found["turn_work"].append(reply["turn_losses"][-1])
+            found[STATED] = max(found[STATED], accuracy["force_error"], accuracy["work_error"])
+        return found
+
     def twist(inputs: Document) -> Document:
         contact = effective(inputs)
         contact["material"]["effective"]["shear_modulus"] = inputs["shear_modulus"]
@@ -281,6 +294,7 @@ def stickslip(compute: Compute) -> Code:
 
     problems: dict[str, Callable[[Document], Document]] = {
         "oblique-impact": oblique_impact,
+        "circular-motion": circular_motion,
         "twist": twist,
         "adhesion": adhesion,
         "relaxation": relaxation,

@@ -12,8 +12,8 @@ from stickslip import reference
 
 FOLDER = ROOT / "reference"
 PROBLEMS = reference.read_problems(FOLDER)
-#: Problems of which stickslip states an error: times, and springs with memory.
-NOT_EXACT = {"oblique-impact", "relaxation"}
+#: Problems of which stickslip states an error, and the largest that it may state: rings, times, and springs with memory.
+NOT_EXACT = {"circular-motion": 5e-3, "oblique-impact": 2e-5, "relaxation": 2e-5}
 
 
 def errors(code: reference.Code) -> dict[str, float | None]:
@@ -25,8 +25,8 @@ def test_the_package_solves_every_problem() -> None:
     rows = list(reference.run(code, PROBLEMS))
     assert {row.problem: left for row in rows if (left := reference.shortcomings(row, 1e-10))} == {}
     # Elsewhere it calls itself exact.
-    assert {row.problem for row in rows if row.stated} == NOT_EXACT
-    assert all(row.stated < 2e-5 for row in rows)
+    assert {row.problem for row in rows if row.stated} == NOT_EXACT.keys()
+    assert all(row.stated <= NOT_EXACT.get(row.problem, 0) for row in rows)
 
 
 def test_the_values_are_those_that_two_ways_agree_on() -> None:
