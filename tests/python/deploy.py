@@ -2,6 +2,7 @@
 
 import json
 import pathlib
+import re
 import sys
 
 import yaml
@@ -26,6 +27,16 @@ hosts = [source["url"].removeprefix("http://").split(":")[0] for source in sourc
 assert set(hosts) <= set(services), hosts
 targets = yaml.safe_load((deploy / "prometheus.yml").read_text())["scrape_configs"][0]["static_configs"][0]["targets"]
 assert targets == ["stickslip:8080"], targets
+
+# Each rule is beside the configuration in the container, names a metric of the page of operation, and says what to do.
+rules = yaml.safe_load((deploy / "prometheus.yml").read_text())["rule_files"]
+mounted = {mount.split(":")[1] for mount in services["prometheus"]["volumes"]}
+assert {f"/etc/prometheus/{name}" for name in rules} <= mounted, rules
+metrics = (deploy / ".." / "docs" / "operation.md").read_text()
+for rule in yaml.safe_load((deploy / rules[0]).read_text())["groups"][0]["rules"]:
+    named = [name.removesuffix("_bucket") for name in re.findall(r"(?:stickslip|process)_\w+", rule["expr"])]
+    assert (named or rule["expr"].startswith("up{")) and all(f"`{name}" in metrics for name in named), rule
+    assert rule["annotations"]["summary"], rule
 
 provider = yaml.safe_load((provisioning / "dashboards" / "stickslip.yaml").read_text())["providers"][0]
 mounts = {mount.split(":")[1]: mount.split(":")[0] for mount in services["grafana"]["volumes"]}
