@@ -48,8 +48,8 @@ pub fn read_loop(content: &[u8], hints: Vec<(String, String)>) -> PyResult<Strin
     written(files::measured_loop(content, &mapping(hints)?, &|| true))
 }
 
-/// The number that a text such as `20 um` says, in the SI unit `needed`, or in that of its own dimension; `None` for a
-/// text that does not begin with a number.
+/// The number that a text such as `20 um` says, in the unit `needed`, or in the SI unit of its own dimension; `None` for
+/// a text that does not begin with a number.
 #[pyfunction]
 #[pyo3(signature = (text, needed=None))]
 pub fn quantity(text: &str, needed: Option<&str>) -> PyResult<Option<f64>> {
@@ -58,11 +58,15 @@ pub fn quantity(text: &str, needed: Option<&str>) -> PyResult<Option<f64>> {
     if rest.is_empty() {
         return Ok(Some(number));
     }
-    let found = match needed.and_then(Unit::parse) {
-        Some(needed) => Unit::of(rest, needed.dimension).map_err(|error| PyValueError::new_err(error.to_string()))?,
-        None => Unit::parse(rest).ok_or_else(|| PyValueError::new_err(format!("`{rest}` is not known as a unit")))?,
+    let unknown = |error: String| PyValueError::new_err(error);
+    let Some(needed) = needed else {
+        let found = Unit::parse(rest).ok_or_else(|| unknown(format!("`{rest}` is not known as a unit")))?;
+        return Ok(Some(found.to_si(number)));
     };
-    Ok(Some(found.to_si(number)))
+    let needed = Unit::parse(needed).ok_or_else(|| unknown(format!("`{needed}` is not known as a unit")))?;
+    let found = Unit::of(rest, needed.dimension).map_err(|error| unknown(error.to_string()))?;
+    // An angle may be needed in degrees or in radians.
+    Ok(Some(found.convert(number, needed)))
 }
 
 /// The longest number at the beginning of a text, and what follows it.

@@ -10,9 +10,9 @@ from typing import Any
 #: How the SI units of members are spelled where a package spells them otherwise.
 _SPELLED: dict[str, dict[str, str]] = {
     "astropy": {"1": ""},
-    "pint": {"1": "dimensionless", "J/m^2": "J/m**2"},
-    "quantities": {"1": "dimensionless", "J/m^2": "J/m**2"},
-    "unyt": {"1": "dimensionless", "J/m^2": "J/m**2", "deg": "degree"},
+    "pint": {"1": "dimensionless"},
+    "quantities": {"1": "dimensionless"},
+    "unyt": {"1": "dimensionless", "deg": "degree"},
 }
 #: The units in which a column is written whose quantity is not known.
 _WRITTEN = ("m", "N", "s", "Pa", "deg", "1")
@@ -33,7 +33,7 @@ class Carried:
 
     def in_unit(self, unit: str | None) -> Any:
         """The numbers in an SI unit; in the base units of their own for "" and None."""
-        return self.to(_SPELLED[self.package].get(unit, unit)) if unit else self.base()
+        return self.to(_spelled(unit, self.package)) if unit else self.base()
 
     @property
     def is_angle(self) -> bool:
@@ -61,6 +61,13 @@ class Carried:
             except Exception:  # As above.
                 continue
         return None
+
+
+def _spelled(unit: str, package: str) -> str:
+    """An SI unit as a package spells it."""
+    power = "^" if package == "astropy" else "**"
+    plain = unit.replace("·", "*").replace("Ω", "ohm").replace("^", power)
+    return _SPELLED[package].get(unit, plain)
 
 
 def carried_by(value: Any) -> Carried | None:

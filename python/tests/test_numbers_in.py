@@ -12,7 +12,7 @@ import pandas
 import pytest
 
 import stickslip as ss
-from stickslip import requests
+from stickslip import members, requests
 from stickslip.documents import floats, to_document
 
 STEEL = ss.Body(2.1e11, 0.3)
@@ -157,6 +157,45 @@ def test_kinds_of_values_times_units_times_places_are_the_plain_numbers() -> Non
         assert all(type(one) is float for one in found), (kind, place)
         tried.add((kind, place))
     assert len(tried) > 150
+
+
+def test_every_unit_of_the_members_is_known_to_every_package() -> None:
+    pint = pytest.importorskip("pint").UnitRegistry()
+    spelled = {unit: unit.replace("·", "*").replace("Ω", "ohm") for unit in {*members.MEMBERS.values()} - {"", "1"}}
+    makers: dict[str, Callable[[str], Any]] = {
+        "text": lambda unit: f"3 {unit}",
+        "name": lambda unit: pandas.Series([3.0], name=f"column [{unit}]"),
+        "pint": lambda unit: 3.0 * pint(spelled[unit]),
+    }
+    if (units := installed("astropy.units")) is not None:
+        makers["astropy"] = lambda unit: 3.0 * units.Unit(spelled[unit])
+    if (unyt := installed("unyt")) is not None:
+        makers["unyt"] = lambda unit: unyt.unyt_quantity(3.0, spelled[unit].replace("^", "**"))
+    if (quantities := installed("quantities")) is not None:
+        makers["quantities"] = lambda unit: quantities.Quantity(3.0, spelled[unit].replace("^", "**"))
+    tried = 0
+    for name, unit in members.MEMBERS.items():
+        if unit in ("", "1"):
+            continue
+        for kind, make in makers.items():
+            found = np.ravel(to_document({name: make(unit)})[name])
+            assert found == pytest.approx([3.0], rel=1e-14), (name, unit, kind)
+            tried += 1
+    assert tried > 150
+
+
+@pytest.mark.parametrize("degrees", [0.0, 1.0, -30.0, 180.0])
+def test_an_angle_is_in_the_unit_of_its_member(degrees: float) -> None:
+    pint = pytest.importorskip("pint").UnitRegistry()
+    radians = math.radians(degrees)
+    given: list[Any] = [f"{degrees!r} deg", f"{radians!r} rad", f"{60.0 * degrees!r} arcmin", degrees * pint.deg]
+    given += [pandas.Series([degrees], name="twist (deg)"), f"{1e3 * radians!r} mrad"]
+    for one in given:
+        assert np.ravel(to_document({"twist": one})["twist"]) == pytest.approx([radians], rel=1e-13, abs=1e-300)
+        assert np.ravel(to_document({"phase": one})["phase"]) == pytest.approx([degrees], rel=1e-13, abs=1e-300)
+    contact = ss.Contact(ss.Sphere(0.01), [STEEL, STEEL], 0.3, normal_force=10.0)
+    reply = ss.simulate(contact, twist=[f"{1e-3 * degrees!r} deg"])
+    assert reply.steps[0].twist == pytest.approx(1e-3 * radians)
 
 
 def test_a_single_quantity_of_each_package_is_the_same_shape() -> None:

@@ -91,6 +91,9 @@ impl Unit {
         }
         let mut whole = table::ONE;
         for (index, over) in text.split('/').enumerate() {
+            // `W/(m*K)`: all that follows a stroke is below it, with brackets and without.
+            let over =
+                over.strip_prefix('(').filter(|_| index > 0).and_then(|over| over.strip_suffix(')')).unwrap_or(over);
             let mut parts = over.split(['*', ' ']).filter(|part| !part.is_empty()).peekable();
             parts.peek()?;
             for part in parts {
@@ -274,6 +277,10 @@ mod tests {
         assert_eq!(of_pressure("N/mm²"), of_pressure("MPa"));
         assert_eq!(of_pressure("N/um"), Some(("a stiffness", 2e6)));
         assert_eq!(of_pressure("mm/s"), Some(("a velocity", 2e-3)));
+        for text in ["W/(m·K)", "W/(m K)", "W/m/K", "W/m K", "mW/(mm·K)", "W m^-1 K^-1"] {
+            assert_eq!(of_pressure(text), of_pressure("W/m/K"), "{text}");
+            assert!(of_pressure(text).is_some(), "{text}");
+        }
         // A decimal multiple is rounded once.
         assert_eq!(Unit::parse("um").unwrap().to_si(20.0).to_bits(), 2e-5_f64.to_bits());
     }
@@ -304,6 +311,11 @@ mod tests {
             "raw",
             "m^999",
             "*",
+            "(m)",
+            "m/()",
+            "m/(s",
+            "m/s)",
+            "m/((s))",
         ] {
             let error = Unit::of(text, Dimension::LENGTH).unwrap_err().to_string();
             assert!(error.contains("is not known as a unit of length"), "{text}: {error}");

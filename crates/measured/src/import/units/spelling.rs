@@ -87,7 +87,7 @@ pub(super) fn spelling(text: &str) -> Option<String> {
         plain = plain.replace(sign, letters);
     }
     let is_known = |letter: char| {
-        letter.is_ascii_alphanumeric() || " .*/^-%\u{e5}\u{b0}\u{2103}".contains(letter) || is_word(letter)
+        letter.is_ascii_alphanumeric() || " .*/^-%()\u{e5}\u{b0}\u{2103}".contains(letter) || is_word(letter)
     };
     plain.chars().all(is_known).then_some(plain)
 }
