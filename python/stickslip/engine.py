@@ -73,12 +73,12 @@ def answer(kind: type[T], reply: Document, contact: Any, request: Mapping[str, A
     seen = contact._warned if isinstance(contact, DefinedContact) else seen_of(definition) if definition else set()
     warn(reply.get("warnings", ()), seen)
     found: type[T] = _other_shape(reply) or kind
-    curve = SimulatedCurve(request) if found is results.SimulateReply else None
+    curve = SimulatedCurve(request) if found in (results.SimulateReply, results.PlanarReply) else None
     return parse(found, reply, curve=curve, **context_of(definition, request))
 
 
 class SimulatedCurve:
-    """The path of a simulation, which is followed when it is drawn."""
+    """The path of a simulation, which is followed when it is drawn; in the plane of its forces along x and y, N."""
 
     def __init__(self, request: Mapping[str, Any]):
         self._request = {name: value for name, value in request.items() if name not in ("stress", "residual", "steps")}

@@ -21,6 +21,15 @@ if TYPE_CHECKING:
 Said = tuple[str, str]
 DISPLACEMENT: Said = ("displacement U", "m")
 FORCE: Said = ("tangential force F", "N")
+#: What is drawn over the radius: the first that was asked for.
+STRESSES = (
+    ("shear", "shear stress τ"),
+    ("hoop", "hoop stress τ"),
+    ("slip", "slip"),
+    ("displacement", "displacement"),
+)
+#: The axes of a loop.
+LOOP = (DISPLACEMENT, FORCE)
 BOUND = "friction bound ±μp"
 
 
@@ -86,12 +95,13 @@ def _stress(ax: Axes, result: Any, **options: Any) -> None:
         is_named = any(line.get_label() == BOUND for line in ax.lines)
         ax.plot(places, bound, color="0.6", label="_" if is_named else BOUND)
         ax.plot(places, -bound, color="0.6")
-    for name, label in (("shear", "shear stress τ"), ("slip", "slip"), ("displacement", "displacement")):
+    for name, label in STRESSES:
         values = getattr(result, name)
         if values is not None:
             ax.plot(places, values, **({"label": label} | options))
             break
-    said = ("stress", "Pa") if result.shear is not None else ("", "m")
+    is_length = result.shear is None and result.hoop is None and (result.slip, result.displacement) != (None, None)
+    said = ("", "m") if is_length else ("stress", "Pa")
     _axes(ax, ("radius r" if place == "radius" else "x", "m"), said)
     ax.legend()
 
@@ -103,7 +113,7 @@ def _residual(ax: Axes, result: Any, **options: Any) -> None:
     _axes(ax, (place, "m"), ("peak of the shear stress", "Pa"))
 
 
-def _path(ax: Axes, result: Any, ends: tuple[Any, Any], **options: Any) -> None:
+def _path(ax: Axes, result: Any, ends: tuple[Any, Any], said: tuple[Said, Said], **options: Any) -> None:
     """The curve of a path through points on the way, and the ends of its moves.
 
     Without the curve only the ends are drawn: a straight line between them is not what the contact does.
@@ -113,21 +123,26 @@ def _path(ax: Axes, result: Any, ends: tuple[Any, Any], **options: Any) -> None:
         (line,) = ax.plot(*curve.points(), **options)
         options = {name: value for name, value in options.items() if name == "zorder"} | {"color": line.get_color()}
     ax.plot(*ends, **({"linestyle": "none", "marker": ".", "label": "_ends of moves"} | options))
-    _axes(ax, DISPLACEMENT, FORCE)
+    _axes(ax, *said)
 
 
 def _loop(ax: Axes, result: Any, **options: Any) -> None:
-    _path(ax, result, (result.displacement, result.force), **options)
+    _path(ax, result, (result.displacement, result.force), LOOP, **options)
 
 
 def _simulation(ax: Axes, result: Any, **options: Any) -> None:
-    _path(ax, result, (result.steps.displacement, result.steps.force), **options)
+    steps = result.steps
+    if any("twist" in row for row in steps._documents):
+        said: tuple[Said, Said] = ("angle of twist ω", "rad"), ("torque M", "N·m")
+        _path(ax, result, (steps.twist, steps.torque), said, **options)
+        return
+    _path(ax, result, (steps.displacement, steps.force), LOOP, **options)
 
 
 def _recorded(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = result.table()
     is_end = columns.get("part", np.ones(len(columns["force"]))) == 1.0
-    _path(ax, result, (columns["displacement"][is_end], columns["force"][is_end]), **options)
+    _path(ax, result, (columns["displacement"][is_end], columns["force"][is_end]), LOOP, **options)
 
 
 def _closed(ax: Axes, result: Any, **options: Any) -> None:
@@ -211,8 +226,9 @@ def _wear(ax: Axes, result: Any, **options: Any) -> None:
 
 def _force_in_plane(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = rows_table(result.steps)
-    ax.plot(columns["force_x"], columns["force_y"], **({"linestyle": "none", "marker": "."} | options))
-    _axes(ax, ("tangential force along x", "N"), ("tangential force along y", "N"), aspect="equal")
+    said: tuple[Said, Said] = ("tangential force along x", "N"), ("tangential force along y", "N")
+    _path(ax, result, (columns["force_x"], columns["force_y"]), said, **options)
+    ax.set_aspect("equal")
 
 
 def _sweep(ax: Axes, result: Any, x: str | None = None, y: str | None = None, **options: Any) -> None:

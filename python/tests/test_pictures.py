@@ -41,6 +41,46 @@ def test_a_loop_is_drawn_through_points_on_the_way(ball: ss.Contact) -> None:
         check_loop(axes, 3.0, summary.gross_slip_displacement)
 
 
+def far_from(points: np.ndarray, line: np.ndarray) -> float:
+    """The largest distance of points from the polygon through the points of a line."""
+    begin, along = line[:-1], np.diff(line, axis=0)
+    length = np.maximum((along**2).sum(axis=1), 1e-300)
+    part = np.clip(((points[:, None] - begin) * along).sum(axis=2) / length, 0.0, 1.0)
+    return float(np.linalg.norm(points[:, None] - begin - part[..., None] * along, axis=2).min(axis=1).max())
+
+
+@pytest.mark.parametrize("kind", ["corner", "ellipse", "forces", "load"])
+def test_motion_in_the_plane_is_drawn_through_points_on_the_way(kind: str, engine: Any) -> None:
+    contact = ss.Contact(ss.Sphere(0.01), ss.Moduli(1e11, 8e10), 0.3, normal_force=10.0)
+    full = contact.summary.gross_slip_displacement
+    parts = 64
+    if kind == "ellipse":
+        turn = {"radii": [0.6 * full, 0.4 * full], "turns": 1}
+        reply = engine.simulate(contact, ellipse=turn | {"steps_per_turn": 4})
+        fine = engine.simulate(contact, ellipse=turn | {"steps_per_turn": 4 * parts})
+    else:
+        ends = np.array([[0.0, 0.0], [0.9, 0.0], [0.2, 0.6], [-0.5, 0.1]])
+        name, scale = ("force", 2.6) if kind == "forces" else ("displacement", 2.0 * full)
+        load = np.array([10.0, 10.0, 12.0, 9.0] if kind == "load" else [10.0] * 4)
+
+        def moves(parts: int) -> list[dict[str, Any]]:
+            share = np.arange(1, 3 * parts + 1) / parts
+            to = scale * np.stack([np.interp(share, range(4), ends[:, axis]) for axis in range(2)], axis=1)
+            loads = np.interp(share, range(4), load)
+            rows = zip(to.tolist(), loads.tolist(), strict=True)
+            return [{name: at} | ({"normal_force": force} if kind == "load" else {}) for at, force in rows]
+
+        reply, fine = engine.simulate(contact, moves=moves(1)), engine.simulate(contact, moves=moves(parts))
+    axes = reply.plot()
+    line, dots = axes.lines[0].get_xydata(), axes.lines[1].get_xydata()
+    assert dots == pytest.approx(np.array(reply.force))
+    exact = np.array(fine.force)
+    # The force turns on the way to a displacement: the lines between the ends of the moves are far from it.
+    assert kind == "forces" or far_from(exact, np.vstack([[0.0, 0.0], dots])) > 0.1
+    assert far_from(exact, line) < 0.02
+    assert far_from(dots, line) < 0.01
+
+
 def test_a_picture_of_an_earlier_path_is_of_that_path(ball: ss.Contact) -> None:
     first = ball.path([1e-7, -1e-7])
     second = ball.path([5e-8])
@@ -53,6 +93,18 @@ def test_states_without_their_path_are_dots() -> None:
     states = [{"displacement": u, "force": f} for u, f in ((0.0, 0.0), (1e-7, 2.0), (-1e-7, -2.0))]
     axes = ss.Result("PathReply", {"steps": states}).plot()
     assert [line.get_linestyle() for line in axes.lines] == ["None"]
+
+
+def test_a_contact_that_is_twisted_is_drawn_by_its_angle_and_torque() -> None:
+    contact = ss.Contact(ss.Sphere(0.01), [ss.Body(2.1e11, 0.3)] * 2, 0.3, normal_force=10.0)
+    reply = ss.simulate(contact, twist=["0.02 deg", "-0.02 deg"], stress={"points": 20, "fields": ["hoop"]})
+    axes = reply.plot()
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("angle of twist ω (µrad)", "torque M (µN·m)")
+    assert axes.lines[1].get_xdata() == pytest.approx(np.radians([0.02, -0.02]))
+    assert len(axes.lines[0].get_xdata()) > 20
+    _, axes = plt.subplots()
+    reply.stress.plot(ax=axes)
+    assert axes.lines[-1].get_label() == "hoop stress τ"
 
 
 def test_states_are_drawn_beside_one_another_with_labels(here: ss.Contact) -> None:

@@ -40,13 +40,14 @@ pub(super) fn table<'a>(reply: &'a PlanarReply, part: &str) -> Option<Table<'a>>
     Some(Table::flat(reply.steps.len(), columns))
 }
 
-/// The loop of the force in the plane, or the components of the stresses over the radius.
-pub(super) fn plot(reply: &PlanarReply, part: &str) -> Option<Plot> {
+/// The loop of the force in the plane along `curve`, with the ends of its moves, or the components of the stresses over
+/// the radius.
+pub(super) fn plot(reply: &PlanarReply, part: &str, curve: Vec<simulation::Point>) -> Option<Plot> {
     if part == "stress" {
         return reply.stress.as_ref().map(stresses);
     }
-    let points = || reply.steps.iter().map(|state| (state.force[0], state.force[1]));
-    let curves = vec![Curve::line("", Colour::Blue, points()), Curve::dots("", Colour::Blue, points())];
+    let ends = reply.steps.iter().map(|state| (state.force[0], state.force[1]));
+    let curves = vec![Curve::line("", Colour::Blue, curve), Curve::dots("", Colour::Blue, ends)];
     let panel = Panel { y: Axis::of("tangential force along y", "N"), curves };
     Some(Plot::new("Force along the path", Axis::of("tangential force along x", "N"), vec![panel]))
 }

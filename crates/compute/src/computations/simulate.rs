@@ -150,7 +150,8 @@ impl Outcome for Simulated {
         match &self.reply {
             SimulationReply::Line(reply) => reply.picture(shown),
             SimulationReply::Plane(reply) => {
-                plane::plot(reply, part(shown, false, reply.stress.is_some())).map(Drawing::Plot)
+                let part = part(shown, false, reply.stress.is_some());
+                plane::plot(reply, part, Vec::new()).map(Drawing::Plot)
             }
         }
     }
@@ -161,6 +162,12 @@ impl Outcome for Simulated {
                 if reply.steps.len() > 1 && part(shown, reply.residual.is_some(), reply.stress.is_some()) == STEPS =>
             {
                 Ok(Some(Drawing::Plot(loop_of(simulation::trace_simulation(&self.task, stop)?, &reply.steps))))
+            }
+            SimulationReply::Plane(reply)
+                if self.task.steps == Steps::All && part(shown, false, reply.stress.is_some()) == STEPS =>
+            {
+                let curve = simulation::trace_in_plane(&self.task, reply, stop)?;
+                Ok(plane::plot(reply, STEPS, curve).map(Drawing::Plot))
             }
             _ => Ok(self.picture(shown)),
         }

@@ -17,6 +17,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod trace_in_plane;
 mod warnings;
 
 pub use plane::{follow_in_plane, simulate_any};
@@ -31,6 +32,7 @@ pub use stated_accuracy::{Timer, accuracy};
 pub use stress_below::subsurface;
 pub use sweep::{Sweep, SweepResult, Worker};
 pub use trace::{Point, trace, trace_simulation};
+pub use trace_in_plane::trace_in_plane;
 pub use warnings::{
     FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, annulus_warning, bulk_warning, excess_error, new_warnings, present_warnings,
     warnings_at,

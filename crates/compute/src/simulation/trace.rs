@@ -2,9 +2,10 @@
 //! lines between them cannot be distinguished from the curve.
 
 use stickslip_mechanics::{Move, Normal, State, Tangential};
+use stickslip_wire::plane::SimulationReply;
 
 use super::run::{coulomb, cycle_moves, spring_foundation};
-use super::{Solver, contact};
+use super::{Solver, contact, simulate_any, trace_in_plane};
 use crate::prelude::*;
 
 /// The largest distance of the curve from a drawn line, over the extents of the picture.
@@ -19,11 +20,17 @@ const MOST_PIECES: usize = 2_000_000;
 /// Displacement, m, and tangential force, N.
 pub type Point = (f64, f64);
 
-/// The curve of a simulation, by its own solver, from the preloaded contact on.
+/// The curve of a simulation, by its own solver, from the preloaded contact on; in the plane of the force along y over
+/// that along x.
 ///
 /// # Errors
 /// [`Failure`] as of the simulation itself.
 pub fn trace_simulation(task: &Simulation, stop: &dyn Stop) -> Result<Vec<Point>, Failure> {
+    if let Plan::Plane(_) = task.plan
+        && let SimulationReply::Plane(reply) = simulate_any(task, stop)?
+    {
+        return trace_in_plane(task, &reply, stop);
+    }
     let start = contact(task.setup.clone(), "/contact")?;
     let moves: Vec<_> = cycle_moves(&task.plan, &start)?.into_iter().map(|step| (step, task.tolerance)).collect();
     match task.solver {
