@@ -45,7 +45,7 @@ pub struct Stepped<C> {
 
 /// Shares worth a thread, for each thread, from which on a step can be interrupted: a shorter one ends before anybody
 /// would notice.
-const INTERRUPTIBLE: usize = 80;
+const INTERRUPTIBLE: usize = 40;
 /// Such shares that are moved between two looks whether to go on.
 const AT_ONCE: usize = 4;
 /// The most contacts that are stepped together, whatever the memory.

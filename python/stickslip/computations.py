@@ -10,11 +10,13 @@ from . import request_types as types
 from . import results
 from .bodies import ContactLike
 from .documents import Document, Quantities, Quantity
+from .keywords import explained
 from .profiles import Line, Plane, Surface
 from .requests import LoopLike, ScanLike
 from .result import T
 
 
+@explained
 class Computations(ABC):
     """The computations, which take a contact at the preload of its definition."""
 
@@ -959,7 +961,7 @@ class Computations(ABC):
         axes: None = None,
         outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
         *,
-        inputs: Sequence[types.Input | Mapping[str, Any]],
+        inputs: Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]],
         job: bool | None = None,
         samples: int | None = None,
         seed: int | None = None,
@@ -972,7 +974,7 @@ class Computations(ABC):
         axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
         outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
         *,
-        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        inputs: Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]] | None = None,
         job: bool | None = None,
         samples: int | None = None,
         seed: int | None = None,
@@ -984,7 +986,7 @@ class Computations(ABC):
         axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
         outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
         *,
-        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        inputs: Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]] | None = None,
         job: bool | None = None,
         samples: int | None = None,
         seed: int | None = None,
@@ -1009,8 +1011,10 @@ class Computations(ABC):
         outputs : str | Mapping[str, str] | Sequence[Output]
             JSON pointers to numbers in the reply to `POST /simulate`, one column each, with or without a name. Where a
             point lacks the number, such as the third of two peaks, the column has `null`.
-        inputs : Sequence[Input | dict]
-            The numbers that are uncertain, in place of `axes`; the reply is then an `UncertaintyReply`.
+        inputs : Mapping[Any, Any] | Sequence[Input | dict]
+            The numbers that are uncertain, in place of `axes`; the reply is then an `UncertaintyReply`. Distributions
+            by their pointers are taken too: each a number with its standard uncertainty (`ufloat` of `uncertainties`,
+            `plus_minus` of pint), an estimate of a fit, {'normal': ...} or {'uniform': ...}.
         job : bool
             Run the sweep as a job even if it is small.
         samples : int
@@ -1120,6 +1124,7 @@ class Computations(ABC):
         return self._answer(results.WearReply, "/wear", given, parts)
 
 
+@explained
 class AsyncComputations(ABC):
     """The computations, which take a contact at the preload of its definition."""
 
@@ -1521,7 +1526,7 @@ class AsyncComputations(ABC):
         axes: None = None,
         outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
         *,
-        inputs: Sequence[types.Input | Mapping[str, Any]],
+        inputs: Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]],
         job: bool | None = None,
         samples: int | None = None,
         seed: int | None = None,
@@ -1534,7 +1539,7 @@ class AsyncComputations(ABC):
         axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
         outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
         *,
-        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        inputs: Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]] | None = None,
         job: bool | None = None,
         samples: int | None = None,
         seed: int | None = None,
@@ -1546,7 +1551,7 @@ class AsyncComputations(ABC):
         axes: Mapping[str, Quantities] | Sequence[types.Axis] | None = None,
         outputs: str | Mapping[str, str] | Sequence[types.Output] | None = None,
         *,
-        inputs: Sequence[types.Input | Mapping[str, Any]] | None = None,
+        inputs: Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]] | None = None,
         job: bool | None = None,
         samples: int | None = None,
         seed: int | None = None,
@@ -1587,6 +1592,7 @@ class AsyncComputations(ABC):
         return await self._answer(results.WearReply, "/wear", given, parts)
 
 
+@explained
 class OfContact(ABC):
     """The calls that move a contact or read its present state."""
 
@@ -2174,6 +2180,7 @@ class OfContact(ABC):
         return self._answer_of_contact(results.StressReply, "stress", given, parts)
 
 
+@explained
 class AsyncOfContact(ABC):
     """The calls that move a contact or read its present state."""
 

@@ -31,6 +31,13 @@ if TYPE_CHECKING:
 MOVES = frozenset({"move", "path", "relax"})
 #: The keywords of a contact beside shape, bodies and friction.
 _LOADS = tuple(field.name for field in fields(Definition) if field.name not in ("profile", "bodies", "friction"))
+#: All of its keywords.
+_MEMBERS = ("profile", "bodies", "friction", "label", *_LOADS)
+_MODULI = "bodies=ss.Moduli(e_star, g_star)"
+#: What is meant by names that a contact does not have.
+_MEANT = dict.fromkeys(("load", "force", "preload"), "normal_force")
+_MEANT |= dict.fromkeys(("effective", "moduli", "e_star", "g_star"), _MODULI)
+_MEANT |= {"material": "bodies", "materials": "bodies", "mu": "friction", "shape": "profile"}
 #: Points for each move in the picture of a loop.
 POINTS_OF_A_PICTURE = 32
 #: Moves of a page of a history.
@@ -340,11 +347,11 @@ def definition(profile: Shape, material: Material, friction: Quantity, load: Map
     """The JSON document of a definition."""
     unknown = [name for name in load if name not in _LOADS]
     if unknown:
-        near = get_close_matches(unknown[0], _LOADS, n=1, cutoff=0.3)
-        hint = "normal_force" if unknown[0] in ("load", "force", "preload") else near[0] if near else ""
-        known = f"{', '.join(_LOADS[:-1])} and {_LOADS[-1]}"
-        meant = f": did you mean {hint}? " if hint else ": "
-        raise TypeError(f"a contact has no {unknown[0]!r}{meant}known are {known}")
+        name = unknown[0]
+        near = get_close_matches(name, _MEMBERS, n=1)
+        hint = _MEANT.get(name) or (near[0] if near else "")
+        known = f"{', '.join(_MEMBERS[:-1])} and {_MEMBERS[-1]}"
+        raise TypeError(f"a contact has no {name!r}: {f'did you mean {hint}? ' if hint else ''}known are {known}")
     document: Document = to_document(Definition(profile, material, friction, **load))
     return document
 

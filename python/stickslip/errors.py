@@ -44,7 +44,7 @@ class StickslipError(Exception):
         self.document: Mapping[str, Any] = document or {}
         #: When the server advises to ask again, s from its reply.
         self.retry_after: float | None = None
-        places = "".join(f"\n  {fault.pointer}: {fault.detail}" for fault in self.errors)
+        places = "".join(f"\n  {fault.pointer}{': ' * bool(fault.pointer)}{fault.detail}" for fault in self.errors)
         super().__init__(f"{code}: {'' if places else detail}{places}")
 
     @property
@@ -103,32 +103,45 @@ _BY_STATUS: dict[int, type[StickslipError]] = {
 }
 
 
-#: Texts of the JSON reader, in words of the package.
-_IN_WORDS = (
-    (
-        re.compile(r"invalid type: (?:floating point|integer) `([^`]*)`, expected (?:an array|a sequence)\b.*"),
-        r"\1 is one number, and a list of them is expected: give [\1]",
-    ),
-    (
-        re.compile(r"invalid type: string \"(.*?)\", expected (?:an array|a sequence)\b.*"),
-        r'"\1" is one value, and a list is expected: give ["\1"]',
-    ),
-    (re.compile(r"unknown variant `([^`]*)`, expected (?:one of )?(.*)"), r"`\1` is not known here: give \2"),
-    (re.compile(r"unknown field `([^`]*)`, expected (?:one of )?(.*)"), r"`\1` is not known here: give \2"),
-    (re.compile(r"invalid type: (?:map|sequence), expected f64\b.*"), "one number is expected, not several"),
-    (re.compile(r"invalid type: boolean `(\w+)`, expected f64\b.*"), r"\1 is a flag, and a number is expected"),
-    (
-        re.compile(r"invalid type: sequence, expected (?:struct|a map|an object)\b.*"),
-        "an object with named members is expected, not a list",
-    ),
+#: What is given, as the reader of JSON calls it, in words of the package.
+_GIVEN = {"null": "nothing", "object": "an object", "map": "an object", "array": "a list", "sequence": "a list"}
+_MISPLACED = re.compile(
+    r"invalid (?:type|value): (?:(?:floating point|integer|boolean|character) `(?P<one>[^`]*)`"
+    r"|string (?P<text>\".*\")|(?P<kind>[a-z ]+)), expected (?P<wanted>.*)",
+    re.DOTALL,
 )
+_LENGTH = re.compile(r"invalid length (\d+), expected (.*)", re.DOTALL)
+_CONFLICT = re.compile(r"(`[^`]*` conflicts with `[^`]*`), expected (.*)", re.DOTALL)
+_UNKNOWN = re.compile(r"unknown (?:variant|field) (`[^`]*`), (?:expected (?:one of )?(.*)|there are no .*)", re.DOTALL)
+_MISSING = re.compile(r"missing field (`[^`]*`)")
+_ONE_KEY = re.compile(r"an object with one key, one of((?: `[^`]*`)+)")
+
+
+def _wanted(text: str) -> str:
+    """What is expected, in words of the package."""
+    text = _ONE_KEY.sub(lambda found: "one of " + ", ".join(found[1].split()), text)
+    if text.startswith("struct "):
+        return "an object with named members"
+    text = re.sub("^(an array|a sequence)", "a list", text)
+    return {"f64": "a number", "a map": "an object"}.get(text, text)
 
 
 def _in_words(detail: str) -> str:
     """The detail of a fault, without the words of the reader of JSON."""
-    for text, words in _IN_WORDS:
-        detail = text.sub(words, detail)
-    return detail
+    if found := _MISPLACED.fullmatch(detail):
+        given = found["one"] or found["text"] or _GIVEN.get(found["kind"], found["kind"])
+        wanted = _wanted(found["wanted"])
+        if wanted == "a list" and (found["one"] or found["text"]):
+            return f"{given} is one {'value' if found['text'] else 'number'}, and a list is expected: give [{given}]"
+        return f"{given} is given, and {wanted} is expected"
+    if found := _LENGTH.fullmatch(detail):
+        wanted = _wanted(found[2])
+        return f"it is empty: give {wanted}" if found[1] == "0" else f"{found[1]} are given, and {wanted} is expected"
+    if found := _CONFLICT.fullmatch(detail):
+        return f"{found[1]}: give {_wanted(found[2])}"
+    if found := _UNKNOWN.fullmatch(detail):
+        return f"{found[1]} is not known here" + (f": give {found[2]}" if found[2] else "")
+    return _MISSING.sub(r"\1 is missing", detail)
 
 
 def refusal(document: Mapping[str, Any] | str) -> StickslipError:

@@ -19,6 +19,7 @@ from . import results
 from .documents import Document, to_document
 from .engine import PATHS, Format, path_of
 from .errors import Fault, InvalidInput, NotFound, ServerError, StickslipError, refusal
+from .members import MOST_PLACES
 from .optional import needed
 from .result import parse
 
@@ -205,6 +206,10 @@ class Calls:
         if axis is None:
             return (yield from self.json("GET", path, params=_listed(query)))
         places = query[axis]
+        if len(places) > MOST_PLACES:
+            # Each of the queries would be within the limit.
+            detail = f"{len(places)} elements: allowed are 1 to {MOST_PLACES}"
+            raise InvalidInput("invalid_input", detail, (Fault(f"/{axis}", detail),))
         for _ in range(self.retries + 1):
             parts, tags = [], set()
             for first in range(0, len(places), MOST_RADII):

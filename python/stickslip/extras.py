@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from . import schemas
-from .result import Result
+from .optional import needed
+from .result import Record, Result
 
 #: The criteria of a rating, by their names in the reply.
 CRITERIA = tuple(name for name, (kind, _) in schemas.FIELDS["FrettingReply"].items() if kind == "Rating")
@@ -41,3 +42,28 @@ class Fretting(Result):
 
 class Swept(Result):
     """The table of a sweep."""
+
+
+class Uncertain(Record):
+    """An output of uncertain inputs, which is a number with its standard uncertainty."""
+
+    @property
+    def nominal_value(self) -> float:
+        """The mean, NaN where too few points have the number."""
+        return _number(self._document.get("mean"))
+
+    @property
+    def std_dev(self) -> float:
+        """The standard uncertainty, NaN where too few points have the number."""
+        return _number(self._document.get("standard_uncertainty"))
+
+    def ufloat(self) -> Any:
+        """It as a number of the package `uncertainties`: the mean and its standard uncertainty."""
+        return needed("uncertainties", "units").ufloat(self.nominal_value, self.std_dev, self._document.get("name"))
+
+    def __repr__(self) -> str:
+        return f"{self._document.get('name')}: {self.nominal_value:.6g} ± {self.std_dev:.2g}"
+
+
+def _number(value: Any) -> float:
+    return float("nan") if value is None else float(value)

@@ -115,6 +115,9 @@ EMPTY: frozenset[str] = frozenset(
     ]
 )
 
+#: The most radii, or places along a line, at which stresses are asked for.
+MOST_PLACES = 10000
+
 #: The method of each computation by its path.
 METHODS: dict[str, str] = {
     "/accuracy": "accuracy",

@@ -277,7 +277,7 @@ def _refuse_unknown(value: Any, place: str) -> None:
     """Refuses a value with a unit or an uncertainty that is not known here."""
     module = type(value).__module__.partition(".")[0]
     if module == "uncertainties" or hasattr(value, "nominal_value"):
-        raise refused(place, f"{value} has an uncertainty, which is not computed with: give its nominal_value")
+        raise refused(place, f"{value} has an uncertainty: give its nominal_value, or name it in `inputs` of sweep()")
     if isinstance(value, np.ndarray) and type(value) in (np.ndarray, np.ma.MaskedArray):
         return
     has_unit = any(getattr(value, name, None) is not None for name in ("unit", "units", "dimensionality"))

@@ -14,6 +14,7 @@ from .documents import Document, HasDocument, HasReply, Quantities, to_document
 from .members import EMPTY, SHORT
 from .paths import path_of_moves
 from .tables import as_csv, is_table
+from .uncertain import inputs
 
 if TYPE_CHECKING:
     from .instruments import Loop, Scan
@@ -122,7 +123,8 @@ def _sweep(given: Document) -> Document:
         base["path"] = {member: _object(member, value) for member, value in base["path"].items()}
     if "contact" in base:
         base["contact"] = definition(base["contact"])
-    listed = {name: read(given[name]) for name, read in (("axes", axes), ("outputs", outputs)) if name in given}
+    readers = (("axes", axes), ("inputs", inputs), ("outputs", outputs))
+    listed = {name: read(given[name]) for name, read in readers if name in given}
     return given | {"base": base} | listed
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from . import request_types as types
-from .extras import Fretting, Swept
+from .extras import Fretting, Swept, Uncertain
 from .result import Counts, Flags, Floats, Named, Record, Result, Rows, Texts
 
 
@@ -1454,6 +1454,31 @@ class SweepReply(Swept):
     """Number of points, which is the length of each column."""
 
 
+class UncertainOutput(Uncertain):
+    """The distribution of an output; `null` where too few points have it."""
+
+    name: str
+    """The name of the output: its own, else its pointer."""
+
+    shares: Named[Record]
+    """The share of the variance that each input has by itself, by its name: Sobol's index of first order."""
+
+    interval: Floats | None
+    """The interval that holds 95 % of the values, with 2.5 % on either side, in the unit of the field."""
+
+    mean: float | None
+    """The mean, in the unit of the field."""
+
+    mean_error: float | None
+    """Standard error of the mean by the number of points, in the unit of the field."""
+
+    standard_uncertainty: float | None
+    """The standard uncertainty, in the unit of the field."""
+
+    standard_uncertainty_error: float | None
+    """Standard error of the standard uncertainty by the number of points, in the unit of the field."""
+
+
 class UncertaintyReply(Result):
     """What uncertain inputs mean for the outputs of a simulation (GUM, supplement 1)."""
 
@@ -1465,7 +1490,7 @@ class UncertaintyReply(Result):
     failures: Rows[Record]
     """The first points without a result."""
 
-    outputs: Rows[Record]
+    outputs: Rows[UncertainOutput]
     """The outputs."""
 
     points: int
@@ -1556,6 +1581,7 @@ NAMES = [
     "StressReply",
     "SubsurfaceReply",
     "SweepReply",
+    "UncertainOutput",
     "UncertaintyReply",
     "WearReply",
 ]

@@ -231,6 +231,16 @@ def _sweep(result: Record) -> Table:
     return columns, {}
 
 
+def _uncertain(result: Any) -> Table:
+    """A row for each output, with a column for the share of each input."""
+    columns, units = _flat(result.outputs._documents, "UncertainOutput")
+    for name in dict.fromkeys(name for output in result.outputs._documents for name in output["shares"]):
+        found = [output["shares"].get(name, {}).get("value") for output in result.outputs._documents]
+        columns[f"share of {name}"] = as_column(found)
+        units[f"share of {name}"] = "1"
+    return columns, units
+
+
 def _tractions(result: Any) -> Table:
     """Tractions along x; the ends of the stick zone are no column."""
     columns = {name: getattr(result, name) for name in ("x", "pressure", "shear")}
@@ -247,6 +257,7 @@ _REPLIES: dict[str, Callable[[Any], Table]] = {
     "Residual": _peaks,
     "SimulateReply": _simulation,
     "SweepReply": _sweep,
+    "UncertaintyReply": _uncertain,
     "WearReply": _wear,
 }
 _ROWS: dict[str, Callable[[Rows[Any]], Table]] = {

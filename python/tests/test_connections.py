@@ -247,8 +247,15 @@ def test_limits_are_those_in_process(ball: ss.Contact, here: ss.Contact) -> None
     for name in ("radius", "shear", "slip"):
         assert np.array_equal(getattr(found, name), getattr(expected, name), equal_nan=True)
     assert np.isfinite(found.shear).all()
-    with pytest.raises(ss.InvalidInput):
-        ball.stress(radii=np.linspace(0.0, 7e-5, 10_001))
+    assert len(ball.stress(radii=np.linspace(0.0, 7e-5, 10_000), fields=["pressure"]).radius) == 10_000
+    for axis in ("radii", "x"):
+        refused = []
+        for contact in (ball, here):
+            with pytest.raises(ss.InvalidInput) as error:
+                contact.stress(**{axis: np.linspace(0.0, 7e-5, 10_001)})
+            refused.append(str(error.value))
+        assert refused[0] == refused[1]
+        assert f"/{axis}: 10001 elements: allowed are 1 to 10000" in refused[0]
 
 
 def test_errors_are_those_in_process(ball: ss.Contact, engine: Any) -> None:

@@ -170,6 +170,23 @@ def test_an_interrupt_ends_a_long_step_soon_and_moves_no_contact() -> None:
     assert np.array_equal(many.forces(), done[-1])
 
 
+def test_an_interrupted_step_leaves_most_of_its_work_undone() -> None:
+    many = ss.Contacts(300_000, ss.Cylinder(0.01, length=0.01), ss.Moduli(1e11, 8e10), 0.3, threads=1)
+    begin = time.process_time()
+    many.step(normal_force=500.0, displacement=1e-8)
+    whole = time.process_time() - begin
+    handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+    begin = time.process_time()
+    try:
+        threading.Timer(0.1 * whole, os.kill, (os.getpid(), signal.SIGINT)).start()
+        with pytest.raises(KeyboardInterrupt):
+            many.step(normal_force=600.0, displacement=-1e-8)
+    finally:
+        signal.signal(signal.SIGINT, handler)
+    # Work over work of the same kind, on whatever machine: a step that went on to its end would take all of it.
+    assert time.process_time() - begin < 0.5 * whole
+
+
 def test_a_contact_that_another_thread_uses_is_refused_by_an_error_of_the_package(here: ss.Contact) -> None:
     many = ss.Contacts(300_000, ss.Sphere(0.01), ss.Moduli(1e11, 8e10), 0.3, threads=1)
     seen: list[Exception] = []

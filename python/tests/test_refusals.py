@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import re
 from collections.abc import Callable
 from typing import Any
 
@@ -9,8 +11,9 @@ import numpy as np
 import pytest
 
 import stickslip as ss
-from stickslip import requests
+from stickslip import members, requests
 from stickslip.documents import to_document
+from stickslip.engine import NAMES
 
 STEEL = ss.Body(2.1e11, 0.3)
 BALL = ss.Definition(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.3, normal_force=10.0)
@@ -74,6 +77,51 @@ def test_bad_input_names_the_field(case: int, api: ss.Client) -> None:
             call(engine)
         assert refused.value.pointer is not None
         assert refused.value.pointer.startswith(pointer), refused.value
+
+
+def places(document: Any, path: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The places of all members and items of a document."""
+    if not isinstance(document, dict | list):
+        return []
+    inner = document.items() if isinstance(document, dict) else enumerate(document)
+    return [place for name, item in inner for place in [(*path, name), *places(item, (*path, name))]]
+
+
+def test_no_refusal_has_words_of_the_reader_of_json(openapi: dict[str, Any]) -> None:
+    generator = np.random.default_rng(11)
+    wrong: list[Any] = ["text", 7, -1, 2.5, True, [], [3], {}, {"other": 1}, None, [[]], [None], ""]
+    refused, details = 0, set()
+    for path, methods in openapi["paths"].items():
+        if path not in members.METHODS or path == "/sweep":
+            continue
+        content = methods["post"]["requestBody"]["content"]["application/json"]
+        whole = next((one["value"] for one in content.get("examples", {}).values()), content.get("example"))
+        if whole is None:
+            whole = openapi["components"]["schemas"][content["schema"]["$ref"].rpartition("/")[2]]["example"]
+        for _ in range(60):
+            document = copy.deepcopy(whole)
+            every = places(document)
+            place = every[generator.integers(len(every))]
+            inner = document
+            for name in place[:-1]:
+                inner = inner[name]
+            kind = generator.integers(8)
+            if kind == 0 and isinstance(inner, dict):
+                del inner[place[-1]]
+            elif kind == 1 and isinstance(inner, dict):
+                inner["unheard_of"] = wrong[generator.integers(len(wrong))]
+            else:
+                inner[place[-1]] = wrong[generator.integers(len(wrong))]
+            try:
+                ss.compute(NAMES[path], document)
+            except ss.StickslipError as error:
+                refused += 1
+                # Names of members are no words of a reader.
+                details |= {re.sub("`[^`]*`", "``", fault.detail) for fault in error.errors}
+    assert refused > 300
+    words = ("invalid type", "invalid value", "invalid length", "unknown variant", "unknown field", "missing field")
+    words += ("f64", "usize", "struct ", "sequence", "floating point", "an object with one key", "null", "map")
+    assert sorted(detail for detail in details if any(word in detail for word in words)) == []
 
 
 def test_range_and_kind_of_a_refusal() -> None:

@@ -75,10 +75,22 @@ def test_a_url_needs_no_scheme() -> None:
         (lambda ball: ss.Contact(ss.Sphere(0.01), STEEL, 0.3, normal_force=1.0), "two bodies are expected"),
         (lambda ball: ss.Contact(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.3), "one load, and none is given"),
         (lambda ball: ss.Body("210 GPa", None), "material '210 GPa' is not known"),
-        (lambda ball: ball.stress(radii=1e-5), "0.00001 is one number, and a list of them is expected"),
+        (lambda ball: ball.stress(radii=1e-5), "0.00001 is one number, and a list is expected: give [0.00001]"),
         (lambda ball: ss.cycle("ball", 1e-8), "is no contact"),
+        (lambda ball: ss.cycle(ball), "it is empty: give one of `displacement`, `force`"),
+        (lambda ball: ball.path(), "/path: it is empty: give one of `moves`"),
+        (lambda ball: ball.path([1e-8], force=[1.0]), "conflicts with `displacement`: give one of `moves`"),
+        (lambda ball: ball.subsurface(points=[1, 2, 3]), "/points/0: 1 is given, and a list of length 3 is expected"),
+        (lambda ball: ss.wear(ball, 1e-8), "/hold: `hold` is missing"),
+        (lambda ball: ss.Contact(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.3, effective=1.0), "did you mean bodies=ss.Mod"),
+        (lambda ball: ss.Contact(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.3, normal_forces=1.0), "mean normal_force?"),
+        (lambda ball: ball.path(ellipse={}), "contact.path has no keyword 'ellipse': ss.accuracy and ss.simulate have"),
+        (lambda ball: ball.path(twist=[1e-5]), "contact.path has no keyword 'twist': ss.accuracy and ss.simulate have"),
+        (lambda ball: ball.path(forces=[1.0]), "did you mean force? known are cycles, displacement"),
+        (lambda ball: ss.cycle(ball, amplitude=1e-8), "ss.cycle has no keyword 'amplitude': known are"),
+        (lambda ball: ss.sliders(ball), "expected one of `count`, `force_error`, `work_error`"),
     ],
-    ids=range(6),
+    ids=range(18),
 )
 def test_messages_are_in_words_of_the_package(here: ss.Contact, call: Any, words: str) -> None:
     with pytest.raises((ss.InvalidInput, TypeError)) as refused:
@@ -86,6 +98,7 @@ def test_messages_are_in_words_of_the_package(here: ss.Contact, call: Any, words
     text = str(refused.value)
     assert words in text
     assert not any(inner in text for inner in ("__init__", "invalid type", "invalid length", "is not iterable"))
+    assert "  : " not in text
 
 
 def test_help_names_allowed_values_members_and_defaults() -> None:

@@ -279,6 +279,7 @@ LOOSE = {
     "/sweep": {
         "base": "Mapping[str, Any]",
         "axes": "Mapping[str, Quantities] | Sequence[types.Axis]",
+        "inputs": "Mapping[Any, Any] | Sequence[types.Input | Mapping[str, Any]]",
         "outputs": "str | Mapping[str, str] | Sequence[types.Output]",
     },
     "/fretting": {"displacement": "Quantity | Quantities"},
@@ -290,6 +291,8 @@ MORE = {
     "bulk": " A number alone is its amplitude.",
     "free": " If left out: friction, g_star and force_offset.",
     "body": " If left out, the first body that is not rigid.",
+    "inputs": " Distributions by their pointers are taken too: each a number with its standard uncertainty (`ufloat` "
+    "of `uncertainties`, `plus_minus` of pint), an estimate of a fit, {'normal': ...} or {'uniform': ...}.",
     "loops": " A loop is a file or its path, a table, a document, or arrays of displacement and force.",
     "scan": " A file or its path, a table, a document, or arrays of x and z, or of x, y and z.",
 }
@@ -377,6 +380,7 @@ def methods_file(api: Schema) -> str:
         "from . import results",
         "from .bodies import ContactLike",
         "from .documents import Document, Quantities, Quantity",
+        "from .keywords import explained",
         "from .profiles import Line, Plane, Surface",
         "from .requests import LoopLike, ScanLike",
         "from .result import T\n",
@@ -388,7 +392,8 @@ def methods_file(api: Schema) -> str:
         for is_async in (False, True):
             word = "async def" if is_async else "def"
             text += [
-                f"\nclass {'Async' if is_async else ''}{name}(ABC):",
+                "\n@explained",
+                f"class {'Async' if is_async else ''}{name}(ABC):",
                 f'    """{says}"""\n',
                 "    @abstractmethod",
                 f"    {word} {call}(self, kind: type[T], name: str, given: Document, parts: dict[str, Document]) -> T:",

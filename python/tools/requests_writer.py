@@ -75,6 +75,7 @@ def members_file(api: Schema) -> str:
     within = {
         (parent, name): one for name, found in stated.items() if name not in members for parent, one in found.items()
     }
+    places = schemas["StressRequest"]["properties"]["radii"]["maxItems"]
     return (
         '"""The members of requests: their units, and what stands for them. Written by `tools/generate.py`."""\n\n'
         "from __future__ import annotations\n\n"
@@ -86,6 +87,8 @@ def members_file(api: Schema) -> str:
         f"SHORT: dict[str, str] = {shown(dict(sorted(shorthands(schemas).items())))}\n\n"
         "#: The members whose object may be empty, so that True asks for them.\n"
         f"EMPTY: frozenset[str] = frozenset(\n    {shown(sorted(may_be_empty(schemas)), '    ')}\n)\n\n"
+        "#: The most radii, or places along a line, at which stresses are asked for.\n"
+        f"MOST_PLACES = {places}\n\n"
         "#: The method of each computation by its path.\n"
         f"METHODS: dict[str, str] = {shown({path: method_name(path) for path, _ in computations(api)})}\n"
     )

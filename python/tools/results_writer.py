@@ -21,7 +21,7 @@ from openapi_schemas import (
 )
 
 #: Classes of the package that give a reply more than its fields.
-BASES = {"FrettingReply": "Fretting", "SweepReply": "Swept"}
+BASES = {"FrettingReply": "Fretting", "SweepReply": "Swept", "UncertainOutput": "Uncertain"}
 #: What has a class without being a reply of its own, or the first shape of one.
 PARTS = (
     "Accuracy",
@@ -31,6 +31,7 @@ PARTS = (
     "SessionSummary",
     "State",
     "StateEvent",
+    "UncertainOutput",
     "UncertaintyReply",
 )
 #: Replies that no method returns: pages of what is iterated over, files that are read in process, and jobs.
@@ -158,7 +159,7 @@ def results_file(api: Schema) -> str:
         "from __future__ import annotations\n",
         "from typing import TYPE_CHECKING, Any\n",
         "from . import request_types as types",
-        "from .extras import Fretting, Swept",
+        "from .extras import Fretting, Swept, Uncertain",
         "from .result import Counts, Flags, Floats, Named, Record, Result, Rows, Texts\n",
     ]
     for name in classes:
