@@ -242,7 +242,8 @@ class AsyncContact(AsyncOfContact, DefinedContact):
     async def follow(self, after: int | None = None, *, patience: float = 300.0) -> AsyncIterator[results.StateEvent]:
         """The states of the contact, one for each move after `after`, without end.
 
-        A broken connection is restored, also when the server restarts, until nothing has come for `patience` seconds.
+        Without `after` the present state comes first. A broken connection is restored, also when the server restarts,
+        until nothing has come for `patience` seconds.
         """
         stream = Following(self._client._calls, f"{self._calls.path}/events", after, patience)
         while True:

@@ -34,6 +34,12 @@ class Fretting(Result):
         return margin
 
     @property
+    def life(self) -> float | None:
+        """The fewest cycles to a crack that any criterion with a `life` has; None where none of them has one."""
+        lives = [rating.life.cycles for rating in self.ratings.values() if rating.life is not None]
+        return min((float(cycles) for cycles in lives if cycles is not None), default=None)
+
+    @property
     def place(self) -> tuple[float, float, float] | None:
         """Where the worst criterion is largest: x, y, z, m."""
         largest = self.ratings[self.worst].largest if self.worst else None

@@ -18,37 +18,42 @@ def explained(owner: type[Owner]) -> type[Owner]:
     of = "contact" if "OfContact" in owner.__name__ else "ss"
     for name, method in list(vars(owner).items()):
         if inspect.isfunction(method) and not name.startswith("_"):
-            known = tuple(inspect.signature(method).parameters)[1:]
+            parameters = list(inspect.signature(method).parameters.values())[1:]
+            known = [one.name for one in parameters]
+            placed = [one.name for one in parameters if one.kind is not inspect.Parameter.KEYWORD_ONLY]
             if not inspect.iscoroutinefunction(method):
                 for keyword in known:
                     _HAVING.setdefault(keyword, []).append(f"{of}.{name}")
-            setattr(owner, name, _explained(method, f"{of}.{name}", frozenset(known)))
+            setattr(owner, name, _explained(method, f"{of}.{name}", frozenset(known), placed))
     return owner
 
 
-def _explained(method: Callable[..., Any], name: str, known: frozenset[str]) -> Callable[..., Any]:
+def _explained(method: Callable[..., Any], name: str, known: frozenset[str], placed: list[str]) -> Callable[..., Any]:
     if inspect.iscoroutinefunction(method):
 
         @wraps(method)
         async def awaited(self: Any, /, *arguments: Any, **keywords: Any) -> Any:
-            if not known.issuperset(keywords):
-                raise _unknown(name, keywords, known)
+            if not known.issuperset(keywords) or len(arguments) > len(placed):
+                raise _unknown(name, keywords, known, placed)
             return await method(self, *arguments, **keywords)
 
         return awaited
 
     @wraps(method)
     def called(self: Any, /, *arguments: Any, **keywords: Any) -> Any:
-        if not known.issuperset(keywords):
-            raise _unknown(name, keywords, known)
+        if not known.issuperset(keywords) or len(arguments) > len(placed):
+            raise _unknown(name, keywords, known, placed)
         return method(self, *arguments, **keywords)
 
     return called
 
 
-def _unknown(method: str, keywords: dict[str, Any], known: frozenset[str]) -> TypeError:
-    """The refusal of the first keyword that is not known."""
-    name = next(one for one in keywords if one not in known)
+def _unknown(method: str, keywords: dict[str, Any], known: frozenset[str], placed: list[str]) -> TypeError:
+    """The refusal of the first keyword that is not known, or else of too many arguments without a name."""
+    name = next((one for one in keywords if one not in known), None)
+    if name is None:
+        taken = f"{' and '.join(placed)} without {'their names' if len(placed) > 1 else 'its name'}" if placed else ""
+        return TypeError(f"{method} takes {taken or 'no argument without its name'}: name the others")
     near = get_close_matches(name, known, n=1)
     if name in _HAVING:
         meant = f"{' and '.join(_HAVING[name])} {'have' if len(_HAVING[name]) > 1 else 'has'} it; "

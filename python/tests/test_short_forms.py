@@ -40,6 +40,30 @@ def test_materials_have_names_sources_and_ranges() -> None:
     assert ss.materials.to_frame().loc["my alloy", "youngs_modulus"] == 1.8e11
 
 
+#: Shear moduli, GPa, of the sources of E and Poisson's ratio: Kaye and Laby, MIL-HDBK-5J, Munro (1997).
+SHEAR_MODULI = {"aluminium": 26.1, "copper": 48.3, "brass (70 Cu, 30 Zn)": 37.3, "titanium": 43.8, "tungsten": 160.6}
+SHEAR_MODULI |= {"cast iron": 60.0, "fused silica": 31.2, "Ti-6Al-4V": 42.7, "Al 7075": 26.9, "Al 2024": 27.6}
+SHEAR_MODULI |= {"Inconel 718": 78.6, "Al2O3 (alumina)": 169.0, "SiC (silicon carbide)": 179.0}
+
+
+def test_elastic_constants_of_materials_are_those_of_their_sources() -> None:
+    for name, found in ss.materials.items():
+        if found.range is None:
+            continue
+        modulus, ratio = found.youngs_modulus, found.poisson_ratio
+        (low, high), ratios = found.range["youngs_modulus"], found.range["poisson_ratio"]
+        assert low <= modulus <= high < 2.5 * low, name
+        assert ratios[0] <= ratio <= ratios[1], name
+        # Of rubber to diamond, and of bodies that do not swell when they are stretched.
+        assert low > 1e6, name
+        assert high < 1.3e12, name
+        assert ratios[0] >= 0.0, name
+        assert ratios[1] <= 0.5, name
+        if name in SHEAR_MODULI:
+            assert modulus / (2.0 + 2.0 * ratio) == pytest.approx(1e9 * SHEAR_MODULI[name], rel=0.02), name
+    assert set(SHEAR_MODULI) < set(ss.materials)
+
+
 def test_one_number_is_a_path_of_one_move(ball: ss.Contact) -> None:
     ball.path("10 nm")
     assert ball.path(force="0.5 N").force.tolist() == pytest.approx([0.5])
@@ -88,9 +112,14 @@ def test_a_url_needs_no_scheme() -> None:
         (lambda ball: ball.path(twist=[1e-5]), "contact.path has no keyword 'twist': ss.accuracy and ss.simulate have"),
         (lambda ball: ball.path(forces=[1.0]), "did you mean force? known are cycles, displacement"),
         (lambda ball: ss.cycle(ball, amplitude=1e-8), "ss.cycle has no keyword 'amplitude': known are"),
+        (
+            lambda ball: ss.fit_loop(ball, [0.0, 1.0], [0.0, 1.0]),
+            "ss.fit_loop takes contact and loops without their na",
+        ),
+        (lambda ball: ball.subsurface({}), "contact.subsurface takes no argument without its name"),
         (lambda ball: ss.sliders(ball), "expected one of `count`, `force_error`, `work_error`"),
     ],
-    ids=range(18),
+    ids=range(20),
 )
 def test_messages_are_in_words_of_the_package(here: ss.Contact, call: Any, words: str) -> None:
     with pytest.raises((ss.InvalidInput, TypeError)) as refused:
