@@ -1,14 +1,18 @@
 //! The cost of moves, stresses and searches: `cargo bench -p stickslip-mechanics`. Compare the figures with each other.
 
 use std::hint::black_box;
+use std::sync::Arc as Arced;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle};
+use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle, TimedCycle};
 use stickslip_mechanics::profile::{Asperities, Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
 use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarTarget, follow};
 use stickslip_mechanics::subsurface::Side;
-use stickslip_mechanics::{Contact, Elasticity, Move, Normal, Preload, Profile, Setup, Sphere, Springs, Tangential};
+use stickslip_mechanics::{
+    Contact, Elasticity, Friction, Law, Move, Normal, Preload, Profile, Prony, PronyTerm, Setup, Sphere, Springs,
+    Tangential,
+};
 
 const REVERSALS: usize = 20;
 const RADII: usize = 200;
@@ -278,5 +282,46 @@ fn plane(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, moves, profiles, asperities, cycles, depths, growth_in_depth, plane, scenes, stresses);
+/// Bodies with memory: a ball that is swayed in time, each move two steps of the springs.
+fn memory(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("bodies with memory");
+    group.sample_size(10);
+    let terms = [(0.3, 0.1), (0.3, 1.0)].map(|(ratio, time)| PronyTerm { ratio, time });
+    let memory = Prony::new(&terms).expect("a valid series");
+    let limit = Law { limit: Friction::from(0.3), memory: Some(Arced::new(memory)) };
+    let Setup { profile, elasticity, preload, .. } = setup();
+    let rubber = Contact::new(Setup { profile, elasticity, friction: limit, preload }).expect("a valid contact");
+    let scale = rubber.gross_slip_displacement();
+    group.bench_function("4 000 steps", |bencher| {
+        bencher.iter(|| {
+            let mut contact = rubber.clone();
+            for index in 1..=2_000 {
+                let sway = 0.7 * scale * (0.05 * f64::from(index)).sin();
+                let step = Move { duration: 0.01, ..to(sway) };
+                contact.apply_within(&step, 1e-3).expect("a displacement has no limit");
+            }
+            contact.count_and_steps()
+        });
+    });
+    let swing = TimedCycle { amplitude: 0.5 * scale, frequency: 1.0 };
+    let relaxed = rubber.relaxed(setup().preload).expect("a solid");
+    group.bench_function("a steady cycle", |bencher| {
+        bencher.iter(|| swing.steady(&rubber, &relaxed, 1, &|| true).expect("a displacement has no limit").error);
+    });
+    group.finish();
+}
+
+criterion_group!(
+    benches,
+    moves,
+    profiles,
+    asperities,
+    cycles,
+    depths,
+    growth_in_depth,
+    memory,
+    plane,
+    scenes,
+    stresses
+);
 criterion_main!(benches);

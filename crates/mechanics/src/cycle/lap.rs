@@ -17,6 +17,8 @@ pub struct OscillatingCycle {
     pub machine_amplitude: f64,
     /// Friction work of a cycle, J.
     pub dissipated_energy: f64,
+    /// Work of the tangential force that the bodies dissipate in a cycle, J, if they have memory.
+    pub viscous_work: Option<f64>,
     /// The largest elastic energy of the tangential deformation, J.
     pub max_elastic_energy: f64,
     /// 2 G* a where the drive is largest, N/m.
@@ -69,6 +71,7 @@ impl OscillatingCycle {
             force_amplitude: amplitude(&|state| state.force),
             machine_amplitude: amplitude(&|state| state.displacement + compliance * state.force),
             dissipated_energy,
+            viscous_work: None,
             max_elastic_energy: after.iter().map(|state| state.elastic_energy).fold(0.0, f64::max),
             tangent_stiffness: 2.0
                 * contact.elasticity.g_star()

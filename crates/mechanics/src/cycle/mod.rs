@@ -10,7 +10,8 @@
 //! - beyond gross slip the indenter slides the rest of the way, with 4 mu F_N (U0 - u_max) more work.
 //!
 //! A machine spring in series with the contact moves the ends of the branches alone. Where the load oscillates too the
-//! cycle is stepped ([`Oscillation`]).
+//! cycle is stepped ([`Oscillation`]). Where the bodies have memory, each spring of the contact has a loop of its own
+//! ([`TimedCycle`]).
 
 mod best_load;
 mod harmonics;
@@ -20,12 +21,14 @@ mod mass_motion;
 mod oscillating;
 mod response;
 mod steady_motion;
+mod timed;
 
 pub use best_load::{BestLoad, best_load, work_under_load};
 pub use harmonics::{Harmonic, Harmonics};
 pub use lap::OscillatingCycle;
 pub use oscillating::{OscillatingLoad, Oscillation};
 pub use response::{Resonator, Response};
+pub use timed::TimedCycle;
 
 use std::f64::consts::PI;
 

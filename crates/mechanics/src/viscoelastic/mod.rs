@@ -12,6 +12,7 @@
 
 mod prony;
 mod row;
+pub(crate) mod steady;
 #[cfg(test)]
 mod tests;
 
@@ -115,7 +116,7 @@ impl Viscoelastic {
     fn on(count: usize, prony: Arc<Prony>, material: &Material<'_>, [indentation, radius]: [f64; 2]) -> Viscoelastic {
         let mut rows = [count, count / 2].map(|count| Row::new(count, 0.0));
         for row in &mut rows {
-            row.reach(material.indenter, prony.terms().len(), radius);
+            row.reach(material.indenter, &prony, radius);
             let (at, still) = (Led::Place(indentation), Led::Place(0.0));
             // A displacement that stays is held.
             let _ = row.step(&prony, (material.indenter, 0.0), 0.0, at, still);
@@ -147,7 +148,7 @@ impl Viscoelastic {
 
     /// Normal and tangential force, N.
     pub(crate) fn forces(&self, material: &Material<'_>) -> [f64; 2] {
-        let ([p, q], _) = self.fine.sums(&self.prony);
+        let [p, q] = self.fine.sums();
         [p * material.stiffness[0], q * material.stiffness[1]]
     }
 
@@ -169,7 +170,7 @@ impl Viscoelastic {
 
     pub(crate) fn heap_bytes(&self) -> usize {
         let rows = self.fine.count + self.coarse.count;
-        size_of::<Viscoelastic>() + rows * (2 + 2 * self.prony.terms().len()) * size_of::<f64>()
+        size_of::<Viscoelastic>() + rows * (4 + 2 * self.prony.terms().len()) * size_of::<f64>()
     }
 
     /// Follows a leg; nothing has changed when an error is returned.
@@ -216,11 +217,14 @@ impl Viscoelastic {
             }
             let end = if part + 1.01 * stride >= 1.0 { 1.0 } else { part + stride };
             let allowed = tolerance * 2.0_f64.powi(i32::try_from(count / PATIENCE).unwrap_or(i32::MAX).min(40));
-            let rows = (self.fine.clone(), self.coarse.clone());
+            let rows = (!straight).then(|| (self.fine.clone(), self.coarse.clone()));
             let (bend, exact, slip_from, beyond) = self.step(material, leg, [part, end])?;
             // Over what it may be; a path that is straight in d and U is exact.
             let excess = (bend / allowed).max(exact / BEND);
-            if !straight && excess > 1.0 && end - part > LEAST_PART {
+            if let Some(rows) = rows
+                && excess > 1.0
+                && end - part > LEAST_PART
+            {
                 (self.fine, self.coarse) = rows;
                 stride = (end - part) * (0.8 / excess.sqrt()).clamp(0.1, 0.6);
                 continue;
@@ -252,7 +256,7 @@ impl Viscoelastic {
         let prony = Arc::clone(&self.prony);
         let scale = material.friction * material.stiffness[0] / material.stiffness[1];
         let state = |row: &Row| {
-            let ([p, q], _) = row.sums(&prony);
+            let [p, q] = row.sums();
             [row.indentation, row.displacement, p, q]
         };
         let led =
@@ -305,8 +309,7 @@ impl Viscoelastic {
 
     /// Takes the present state into the stated error.
     fn note_error(&mut self, material: &Material<'_>) {
-        let (fine, least) = self.fine.sums(&self.prony);
-        let (coarse, _) = self.coarse.sums(&self.prony);
+        let (fine, coarse, least) = (self.fine.sums(), self.coarse.sums(), self.fine.bends());
         self.largest_load = self.largest_load.max(fine[0] * material.stiffness[0]);
         let radius = self.radius(material.indenter);
         let scale = material.friction * material.stiffness[0] / material.stiffness[1];
@@ -368,7 +371,7 @@ impl Viscoelastic {
             {
                 *list = (0..length).map(|_| next()).collect::<Option<Vec<f64>>>()?;
             }
-            row.place(indenter);
+            row.place(indenter, &self.prony);
         }
         reader.0.is_empty().then_some(contact)
     }

@@ -47,14 +47,14 @@ struct Mode {
 /// How springs move in a time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Kernel {
-    /// exp(-t/T_i), and its mean over the time.
+    /// exp(-t/T_i), its mean over the time, and the mean of 1 less that mean so far.
     decay: [f64; MOST_TERMS],
     mean: [f64; MOST_TERMS],
+    late: [f64; MOST_TERMS],
     /// What is left of each mode.
     free: [f64; MOST_TERMS],
     /// The change of p for a change of w that comes evenly over the time.
     pub(super) slope: f64,
-    time: f64,
 }
 
 /// ```
@@ -127,8 +127,8 @@ impl Prony {
     }
 
     pub(super) fn kernel(&self, time: f64) -> Kernel {
-        let mut kernel =
-            Kernel { decay: [1.0; MOST_TERMS], mean: [1.0; MOST_TERMS], free: [1.0; MOST_TERMS], slope: 1.0, time };
+        let ones = [1.0; MOST_TERMS];
+        let mut kernel = Kernel { decay: ones, mean: ones, late: [0.5; MOST_TERMS], free: ones, slope: 1.0 };
         if time <= 0.0 {
             return kernel;
         }
@@ -136,6 +136,7 @@ impl Prony {
             let x = time / term.time;
             kernel.decay[index] = (-x).exp();
             kernel.mean[index] = -(-x).exp_m1() / x;
+            kernel.late[index] = if x < SHORT { 0.5 - x / 6.0 + x * x / 24.0 } else { (1.0 - kernel.mean[index]) / x };
             kernel.free[index] = (-mode.rate * time).exp();
             kernel.slope -= term.ratio * (1.0 - kernel.mean[index]);
         }
@@ -144,44 +145,51 @@ impl Prony {
 
     /// s, the deflection that the spring would keep if it were let go.
     pub(super) fn kept(&self, v: &[f64]) -> f64 {
-        self.terms.iter().zip(v).map(|(term, v)| term.ratio * v).sum()
+        let mut kept = 0.0;
+        for (v, term) in v.iter().zip(&self.terms) {
+            kept += term.ratio * v;
+        }
+        kept
     }
 
-    /// Moves along a straight line from one deflection to another.
-    pub(super) fn press(&self, kernel: &Kernel, v: &mut [f64], [from, to]: [f64; 2]) {
-        for (index, v) in v.iter_mut().enumerate() {
-            *v = to - (to - from) * kernel.mean[index] - kernel.decay[index] * (from - *v);
+    /// Moves along a straight line from one deflection to another; p after that.
+    pub(super) fn press(&self, kernel: &Kernel, v: &mut [f64], [from, to]: [f64; 2]) -> f64 {
+        let mut kept = 0.0;
+        for (((v, term), mean), decay) in v.iter_mut().zip(&self.terms).zip(&kernel.mean).zip(&kernel.decay) {
+            *v = to - (to - from) * mean - decay * (from - *v);
+            kept += term.ratio * *v;
         }
+        to - kept
     }
 
     /// p after that, without the move.
     pub(super) fn pressed(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
-        let follow = |(index, (term, v)): (usize, (&PronyTerm, &f64))| {
-            term.ratio * (to - (to - from) * kernel.mean[index] - kernel.decay[index] * (from - v))
-        };
-        to - self.terms.iter().zip(v).enumerate().map(follow).sum::<f64>()
+        let mut kept = 0.0;
+        for (((v, term), mean), decay) in v.iter().zip(&self.terms).zip(&kernel.mean).zip(&kernel.decay) {
+            kept += term.ratio * (to - (to - from) * mean - decay * (from - v));
+        }
+        to - kept
     }
 
     /// The mean of p over that time.
     pub(super) fn mean_of_p(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
         let middle = 0.5 * (from + to);
-        let follow = |(index, (term, v)): (usize, (&PronyTerm, &f64))| {
-            let x = kernel.time / term.time;
-            let late = if x < SHORT { 0.5 - x / 6.0 + x * x / 24.0 } else { (1.0 - kernel.mean[index]) / x };
-            term.ratio * (middle - (to - from) * late - (from - v) * kernel.mean[index])
-        };
-        middle - self.terms.iter().zip(v).enumerate().map(follow).sum::<f64>()
+        let mut kept = 0.0;
+        for (((v, term), mean), late) in v.iter().zip(&self.terms).zip(&kernel.mean).zip(&kernel.late) {
+            kept += term.ratio * (middle - (to - from) * late - (from - v) * mean);
+        }
+        middle - kept
     }
 
     /// Relaxes without a load.
     pub(super) fn relax(&self, kernel: &Kernel, v: &mut [f64]) {
-        let mut amplitudes = [0.0; MOST_TERMS];
-        for (amplitude, mode) in amplitudes.iter_mut().zip(&self.modes) {
-            *amplitude = mode.of.iter().zip(&*v).map(|(of, v)| of * v).sum();
-        }
+        let mut before = [0.0; MOST_TERMS];
+        let before = &mut before[..v.len()];
+        before.copy_from_slice(v);
         v.fill(0.0);
-        for ((mode, amplitude), left) in self.modes.iter().zip(amplitudes).zip(kernel.free) {
-            v.iter_mut().zip(&mode.to).for_each(|(v, to)| *v += to * left * amplitude);
+        for (mode, left) in self.modes.iter().zip(&kernel.free) {
+            let amplitude = left * mode.of.iter().zip(&*before).map(|(of, v)| of * v).sum::<f64>();
+            v.iter_mut().zip(&mode.to).for_each(|(v, to)| *v += to * amplitude);
         }
     }
 

@@ -7,6 +7,7 @@
 //! for each spring, but for what it does more than once in the step: it touches or leaves once and begins to slip once.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use super::prony::{Kernel, MOST_TERMS, Prony};
 use crate::indenter::Indenter;
@@ -40,7 +41,9 @@ pub(super) struct Row {
     pub(super) upright: bool,
     pub(super) indentation: f64,
     pub(super) displacement: f64,
-    levels: Vec<f64>,
+    levels: Arc<[f64]>,
+    /// p and q of each in the contact, zero outside: they follow from the others.
+    loads: Vec<[f64; 2]>,
     pub(super) normal: Vec<f64>,
     pub(super) tangential: Vec<f64>,
     /// u of each.
@@ -102,19 +105,18 @@ impl Step<'_> {
 
     fn at(&self, level: f64, part: f64) -> f64 {
         let [from, to] = self.indentation;
-        from + part * (to - from) - level
+        (if part < 1.0 { from + part * (to - from) } else { to }) - level
     }
 
-    /// How a spring presses, and p at the end; `v` becomes that of the end.
-    fn press(&self, level: f64, v: &mut [f64]) -> (Pressing, f64) {
+    /// How a spring presses that had the load `before`, and p at the end; `v` becomes that of the end.
+    fn press(&self, level: f64, v: &mut [f64], before: f64) -> (Pressing, f64) {
         let ends = [self.at(level, 0.0), self.at(level, 1.0)];
-        if ends[0] > self.prony.kept(v) {
+        if before > 0.0 {
             let p = self.prony.pressed(&self.kernel, v, ends);
             if p >= 0.0 {
                 self.prony.press(&self.kernel, v, ends);
                 return (Pressing::Through, p);
             }
-            let before = ends[0] - self.prony.kept(v);
             let part = between([(0.0, before), (1.0, p)], INSTANT, |part| {
                 self.prony.pressed(&self.kernel(part), v, [ends[0], self.at(level, part)])
             });
@@ -180,18 +182,18 @@ impl Step<'_> {
     }
 
     /// Moves a spring over a part of the step in which it presses throughout: from `begin`, with the v_z there, to
-    /// `end`, where p is `p`. The slip, the friction work and the work of q.
-    fn slide(&self, spring: &mut Tangential<'_>, [begin, end]: [f64; 2], way: f64, p: f64) -> [f64; 3] {
+    /// `end`, where p is `p`. The slip, the friction work and the work of q, and q.
+    fn slide(&self, spring: &mut Tangential<'_>, [begin, end]: [f64; 2], way: f64, p: f64) -> [f64; 4] {
         let (prony, scale) = (self.prony, self.scale);
         let kernel = &*self.kernel_over(end - begin);
         let ends = [spring.u, spring.u + way];
         let trial = prony.pressed(kernel, spring.v, ends);
         let bound = scale * p;
         if trial.abs() <= bound {
-            let work = way * prony.mean_of_p(kernel, spring.v, ends);
+            let work = if way.abs() > 0.0 { way * prony.mean_of_p(kernel, spring.v, ends) } else { 0.0 };
             prony.press(kernel, spring.v, ends);
             spring.u = ends[1];
-            return [0.0, 0.0, work];
+            return [0.0, 0.0, work, trial];
         }
         let sign = trial.signum();
         let at = |part: f64| self.at(spring.level, part);
@@ -220,12 +222,13 @@ impl Step<'_> {
         prony.relax(kernel, spring.v);
         prony.press(kernel, spring.z, [at(from), at(end)]);
         spring.v.iter_mut().zip(&*spring.z).for_each(|(v, z)| *v += factor * z);
-        let to = factor * p + prony.kept(spring.v);
+        let kept = prony.kept(spring.v);
+        let to = factor * p + kept;
         let way = spring.u + way - u;
         let slip = way - (to - u);
         spring.u = to;
         let mean = 0.5 * factor * (first + p);
-        [slip, (mean * slip).max(0.0), stuck + mean * way]
+        [slip, (mean * slip).max(0.0), stuck + mean * way, to - kept]
     }
 }
 
@@ -246,7 +249,8 @@ impl Row {
             upright: false,
             indentation,
             displacement: 0.0,
-            levels: empty(),
+            levels: Arc::from([]),
+            loads: Vec::new(),
             normal: empty(),
             tangential: empty(),
             carried: empty(),
@@ -256,7 +260,8 @@ impl Row {
     }
 
     /// Places springs up to a contact radius, m, and some more, or makes pairs of them one until they reach it.
-    pub(super) fn reach(&mut self, indenter: &Indenter, terms: usize, radius: f64) {
+    pub(super) fn reach(&mut self, indenter: &Indenter, prony: &Prony, radius: f64) {
+        let terms = prony.terms().len();
         if self.upright || radius <= 0.0 || radius <= self.count as f64 * self.width {
             return;
         }
@@ -280,11 +285,11 @@ impl Row {
                 values[pairs * terms..].fill(0.0);
             }
         }
-        self.place(indenter);
+        self.place(indenter, prony);
     }
 
-    /// The levels of the springs, which follow from their width.
-    pub(super) fn place(&mut self, indenter: &Indenter) {
+    /// The levels of the springs, which follow from their width, and their loads.
+    pub(super) fn place(&mut self, indenter: &Indenter, prony: &Prony) {
         let end = indenter.limit_radius().unwrap_or(f64::INFINITY);
         let level = |index: usize| {
             let radius = (index as f64 + 0.5) * self.width;
@@ -292,6 +297,14 @@ impl Row {
             if level.is_nan() { f64::INFINITY } else { level }
         };
         self.levels = (0..self.carried.len()).map(level).collect();
+        let terms = prony.terms().len();
+        let springs = self.normal.chunks_exact(terms).zip(self.tangential.chunks_exact(terms));
+        let springs = springs.zip(&self.carried).zip(&*self.levels);
+        let load = |(((z, x), u), level): (((&[f64], &[f64]), &f64), &f64)| {
+            let p = self.indentation - level - prony.kept(z);
+            if p > 0.0 { [p, u - prony.kept(x)] } else { [0.0; 2] }
+        };
+        self.loads = springs.map(load).collect();
     }
 
     /// Makes one step of a time, s, straight in d and U.
@@ -313,18 +326,18 @@ impl Row {
                 let found = self.indentation_for(&mut step, sum / self.width);
                 let radius = indenter.radius(found.max(0.0));
                 if !self.upright && radius > self.count as f64 * self.width {
-                    self.reach(indenter, terms, radius);
+                    self.reach(indenter, prony, radius);
                     return self.step(prony, (indenter, scale), time, normal, tangential);
                 }
                 found
             }
         };
-        self.reach(indenter, terms, indenter.radius(indentation.max(0.0)));
+        self.reach(indenter, prony, indenter.radius(indentation.max(0.0)));
         step.indentation = [before, indentation];
         let mut pressed = Vec::with_capacity(self.levels.len());
         let old = self.normal.clone();
-        for (level, v) in self.levels.iter().zip(self.normal.chunks_exact_mut(terms)) {
-            pressed.push(step.press(*level, v));
+        for ((level, v), load) in self.levels.iter().zip(self.normal.chunks_exact_mut(terms)).zip(&self.loads) {
+            pressed.push(step.press(*level, v, load[0]));
         }
         let way = match tangential {
             Led::Place(to) => to - self.displacement,
@@ -336,6 +349,7 @@ impl Row {
         if let Led::Place(to) = tangential {
             self.displacement = to;
         }
+        self.load_free(prony, &pressed);
         Ok(self.slipped(&pressed, &slips, scale, way))
     }
 
@@ -345,7 +359,8 @@ impl Row {
         let (mut friction, mut work) = (0.0, 0.0);
         let mut slips = Vec::with_capacity(pressed.len());
         let springs = self.tangential.chunks_exact_mut(terms).zip(old.chunks_exact_mut(terms));
-        for ((((v, z), u), level), &(pressing, p)) in springs.zip(&mut self.carried).zip(&self.levels).zip(pressed) {
+        let springs = springs.zip(&mut self.carried).zip(&*self.levels).zip(&mut self.loads);
+        for (((((v, z), u), level), load), &(pressing, p)) in springs.zip(pressed) {
             let parts = match pressing {
                 Pressing::Through => [0.0, 1.0],
                 Pressing::From(part) => [part, 1.0],
@@ -368,8 +383,9 @@ impl Row {
             if parts[1] > parts[0] || !matches!(pressing, Pressing::Free) {
                 let mut spring = Tangential { level: *level, v: &mut *v, z, u: *u };
                 let share = way * (parts[1] - parts[0]);
-                let [slid, lost, done] = step.slide(&mut spring, parts, share, p);
+                let [slid, lost, done, q] = step.slide(&mut spring, parts, share, p);
                 *u = spring.u;
+                *load = [p, q];
                 slip = slid;
                 friction += lost;
                 work += done;
@@ -385,6 +401,21 @@ impl Row {
         slips
     }
 
+    /// The loads of the springs that were or are free; those of the others are known.
+    fn load_free(&mut self, prony: &Prony, pressed: &[(Pressing, f64)]) {
+        let terms = prony.terms().len();
+        for (index, (pressing, _)) in pressed.iter().enumerate() {
+            let load = &mut self.loads[index];
+            if !matches!(pressing, Pressing::Through) {
+                load[0] = self.indentation - self.levels[index] - prony.kept(&self.normal[index * terms..][..terms]);
+                load[1] = self.carried[index] - prony.kept(&self.tangential[index * terms..][..terms]);
+            }
+            if load[0] <= 0.0 || load[0].is_nan() {
+                *load = [0.0; 2];
+            }
+        }
+    }
+
     /// The indentation at which the sum of p is `wanted`, m.
     fn indentation_for(&self, step: &mut Step<'_>, wanted: f64) -> f64 {
         let terms = step.prony.terms().len();
@@ -393,7 +424,7 @@ impl Row {
         let mut inside = Vec::new();
         let mut outside = Vec::new();
         for (index, (level, v)) in self.levels.iter().zip(self.normal.chunks_exact(terms)).enumerate() {
-            if before - level > step.prony.kept(v) {
+            if self.loads[index][0] > 0.0 {
                 inside.push(step.prony.pressed(&step.kernel, v, [before - level; 2]));
             } else {
                 outside.push(index);
@@ -418,7 +449,7 @@ impl Row {
                 }
                 let mut copy = [0.0; MOST_TERMS];
                 copy[..terms].copy_from_slice(v);
-                let (_, p) = step.press(level, &mut copy[..terms]);
+                let (_, p) = step.press(level, &mut copy[..terms], 0.0);
                 if p > 0.0 {
                     sum += p;
                     slope += 1.0;
@@ -483,52 +514,51 @@ impl Row {
 
     /// Where the step slipped, and whether the two conditions of the method hold.
     fn slipped(&self, pressed: &[(Pressing, f64)], slips: &[f64], scale: f64, way: f64) -> Slipped {
-        let deepest = pressed.iter().map(|(_, p)| scale * p).fold(way.abs(), f64::max);
-        let least = NO_SLIP * deepest;
-        let touches = |index: &usize| pressed[*index].1 > 0.0;
-        let first = slips.iter().position(|slip| slip.abs() > least);
-        let inside = (0..pressed.len()).filter(touches).count();
-        let last = (0..pressed.len()).rev().find(touches).map_or(0, |last| last + 1);
+        let (mut deepest, mut inside, mut last) = (way.abs(), 0, 0);
+        for (index, &(_, p)) in pressed.iter().enumerate() {
+            if p > 0.0 {
+                (deepest, inside, last) = (deepest.max(scale * p), inside + 1, index + 1);
+            }
+        }
         // A few springs of a row of hundreds are its discretisation.
         let few = 1 + self.count / 256;
-        let sign = first.map_or(0.0, |first| slips[first]);
+        let least = NO_SLIP * deepest;
+        let Some(first) = slips.iter().position(|slip| slip.abs() > least) else {
+            return Slipped { from: f64::INFINITY, any: false, beyond: last - inside > few };
+        };
         let most = slips.iter().fold(0.0, |most: f64, slip| most.max(slip.abs()));
-        let other = slips.iter().filter(|slip| slip.abs() > (1e-3 * most).max(least) && **slip * sign < 0.0).count();
-        let stuck = first.map_or(0, |first| {
-            let within = |index: &usize| touches(index) && scale * pressed[*index].1 > 1e-3 * deepest;
-            (first..last).filter(within).filter(|index| slips[*index].abs() <= least).count()
-        });
-        Slipped {
-            from: first.map_or(f64::INFINITY, |first| first as f64 * self.width),
-            any: first.is_some(),
-            beyond: last - inside > few || other > few || stuck > few,
+        let (sign, much) = (slips[first], (1e-3 * most).max(least));
+        let (mut other, mut stuck) = (0, 0);
+        for (slip, (_, p)) in slips.iter().zip(pressed).skip(first) {
+            other += usize::from(slip.abs() > much && slip * sign < 0.0);
+            stuck += usize::from(slip.abs() <= least && scale * p > 1e-3 * deepest);
         }
+        let beyond = last - inside > few || other > few || stuck > few;
+        Slipped { from: first as f64 * self.width, any: true, beyond }
     }
 
-    /// p and q of each spring in the contact, from the centre on.
-    pub(super) fn loads<'a>(&'a self, prony: &'a Prony) -> impl Iterator<Item = [f64; 2]> + 'a {
-        let terms = prony.terms().len();
-        let springs = self.normal.chunks_exact(terms).zip(self.tangential.chunks_exact(terms));
-        springs.zip(&self.carried).zip(&self.levels).map(move |(((z, x), u), level)| {
-            let p = self.indentation - level - prony.kept(z);
-            if p > 0.0 { [p, u - prony.kept(x)] } else { [0.0; 2] }
-        })
+    /// The sums of p and q, m^2.
+    pub(super) fn sums(&self) -> [f64; 2] {
+        let mut sums = [0.0; 2];
+        for [p, q] in &self.loads {
+            sums = [sums[0] + p, sums[1] + q];
+        }
+        sums.map(|sum| sum * self.width)
     }
 
-    /// The sums of p and q, m^2, and the least error that a row of this width can have of them.
-    pub(super) fn sums(&self, prony: &Prony) -> ([f64; 2], [f64; 2]) {
-        let (mut sums, mut bends) = ([0.0; 2], [0.0; 2]);
-        let mut near: [Option<[f64; 2]>; 2] = [None, None];
-        let end = if self.upright { None } else { Some([0.0; 2]) };
-        for load in self.loads(prony).chain(end) {
-            for (side, value) in load.into_iter().enumerate() {
-                sums[side] += value;
-                let (one, two) = (near[0].map_or(value, |near| near[side]), near[1].map(|near| near[side]));
-                bends[side] += (value - 2.0 * one + two.unwrap_or(one)).abs();
+    /// The least error that a row of this width can have of the sums.
+    pub(super) fn bends(&self) -> [f64; 2] {
+        let mut bends = [0.0; 2];
+        let end = if self.upright { None } else { Some(&[0.0; 2]) };
+        let Some(mut one) = self.loads.first() else { return bends };
+        let mut two = one;
+        for load in self.loads.iter().skip(1).chain(end) {
+            for (side, bend) in bends.iter_mut().enumerate() {
+                *bend += (load[side] - 2.0 * one[side] + two[side]).abs();
             }
-            near = [Some(load), near[0]];
+            (one, two) = (load, one);
         }
-        (sums.map(|sum| sum * self.width), bends.map(|bend| bend * self.width / 16.0))
+        bends.map(|bend| bend * self.width / 16.0)
     }
 
     /// The contact radius, m.
@@ -538,7 +568,7 @@ impl Row {
             let kept = prony.kept(&self.normal[index * terms..(index + 1) * terms]);
             (self.indentation - self.levels[index] - kept, kept)
         };
-        let Some(last) = (0..self.levels.len()).rev().find(|index| gap(*index).0 > 0.0) else {
+        let Some(last) = self.loads.iter().rposition(|load| load[0] > 0.0) else {
             // A tip that touches less than one spring does.
             return if self.indentation > 0.0 && self.normal.iter().all(|v| v.abs() <= 0.0) {
                 indenter.radius(self.indentation)

@@ -24,10 +24,10 @@ fn pressing_and_holding_a_ball_meet_lee_and_radok() {
     let (prony, indenter) = (series(&[(2.0 / 3.7, 1.0), (0.7 / 3.7, 0.1)]), ball());
     let material = Material { indenter: &indenter, stiffness: [7.4, 7.4], friction: 0.5 };
     let mut row = Row::new(32_768, 0.0);
-    row.reach(&indenter, 2, 0.1);
+    row.reach(&indenter, &prony, 0.1);
     let mut force = |to: f64, time: f64| {
         row.step(&prony, (&indenter, 0.5), time, Led::Place(to), Led::Place(0.0)).unwrap();
-        row.sums(&prony).0[0] * material.stiffness[0]
+        row.sums()[0] * material.stiffness[0]
     };
     let (pressed, held) = (force(0.01, 1.0), force(0.01, 0.2));
     assert!((pressed / 3.313_590_044_343e-3 - 1.0).abs() < 1e-8, "{pressed}");

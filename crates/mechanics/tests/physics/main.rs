@@ -58,6 +58,7 @@ mod tables;
 mod thin_annuli;
 mod twist;
 mod viscoelastic;
+mod viscoelastic_rings;
 mod wear;
 mod where_parts_meet;
 mod worst_place;

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use stickslip_mechanics::cycle::{SteadyCycle, TimedCycle};
 use stickslip_mechanics::profile::{Cone, FlatPunch, LineContact, PowerLaw, TruncatedCone};
 use stickslip_mechanics::{
     Contact, Elasticity, Error, Friction, Law, Move, Normal, Preload, Profile, Prony, PronyTerm, Regime, Setup, Sphere,
@@ -83,6 +84,81 @@ fn a_steady_loop_loses_what_friction_and_bodies_dissipate() {
         }
         assert!((found[0] - all).abs() < 1e-3 && (found[1] - friction).abs() < 1e-3, "{frequency}: {found:?}");
         assert!(!contact.beyond_annulus());
+    }
+}
+
+#[test]
+fn a_steady_cycle_meets_the_values_of_stepped_loops() {
+    // As above, each to the digits that are known.
+    let expected = [(0.01, 0.04939, 0.03595), (0.1, 0.1677, 0.0366), (1.0, 0.6836, 0.1780), (10.0, 0.5774, 0.5060)];
+    let contact = contact(ball(), law(&[(2.0 / 3.0, 1.0)]), (3.0, 2.4), Preload::Indentation(0.01));
+    let relaxed = contact.relaxed(Preload::Indentation(0.01)).unwrap();
+    let unit = relaxed.friction() * relaxed.normal_force() * relaxed.gross_slip_displacement();
+    let amplitude = 0.4 * relaxed.gross_slip_displacement();
+    for (turned, all, friction) in expected {
+        let swing = TimedCycle { amplitude, frequency: turned / std::f64::consts::TAU };
+        let cycle = swing.steady(&contact, &relaxed, 3, &|| true).unwrap();
+        let found = [cycle.dissipated_energy + cycle.viscous_work.unwrap(), cycle.dissipated_energy];
+        let found = found.map(|work| work / unit);
+        assert!((found[0] - all).abs() < 5e-4 && (found[1] - friction).abs() < 5e-4, "{turned}: {found:?}");
+        assert!(cycle.error < 2e-4, "{turned}: {}", cycle.error);
+        // The work of the first harmonic is all of it.
+        let work = -std::f64::consts::PI * amplitude * cycle.harmonics[0].quadrature / unit;
+        assert!((work - found[0]).abs() < 1e-4 && cycle.harmonics[1].in_phase.abs() < 1e-9, "{turned}: {work}");
+    }
+    // The same load is held in the long run: a smaller one at first goes deeper.
+    let held = contact.relaxed(Preload::NormalForce(relaxed.normal_force())).unwrap();
+    assert!((held.indentation() / 0.01 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn steady_cycles_are_elastic_where_time_is_short_or_long_and_those_of_a_path_between() {
+    for profile in shapes() {
+        let terms = [(0.3, 1.0), (0.25, 20.0)];
+        let soft = contact(profile.clone(), law(&terms), (2.0, 1.6), Preload::Indentation(0.02));
+        let relaxed = soft.relaxed(Preload::Indentation(0.02)).unwrap();
+        let limit = relaxed.friction() * relaxed.normal_force();
+        for share in [0.2, 0.7, 1.4] {
+            let amplitude = share * relaxed.gross_slip_displacement();
+            let steady = |frequency| {
+                let swing = TimedCycle { amplitude, frequency };
+                swing.steady(&soft, &relaxed, 0, &|| true).unwrap()
+            };
+            // Pressure relaxes in any case.
+            for (frequency, g_star) in [(1e-9, 0.45 * 1.6), (1e9, 1.6)] {
+                let moduli = (0.45 * 2.0, g_star);
+                let same = contact(profile.clone(), Law::from(0.5), moduli, Preload::Indentation(0.02));
+                let (found, expected) = (steady(frequency), SteadyCycle::of(&same, amplitude));
+                let name = format!("{profile:?} {share} {frequency:e}: {found:?}");
+                let work = (found.dissipated_energy - expected.dissipated_energy()) / (4.0 * limit * amplitude);
+                assert!(work.abs() < 1e-5 && found.viscous_work.unwrap() < 1e-5 * limit * amplitude, "{name}");
+                assert!((found.force_amplitude - expected.force_amplitude()).abs() < 1e-4 * limit, "{name}");
+                assert!((found.stick_radius - expected.stick_radius()).abs() < 1e-6, "{name}");
+                assert!((found.max_elastic_energy / expected.max_elastic_energy() - 1.0).abs() < 1e-4, "{name}");
+                assert_eq!(found.regime, expected.regime(), "{name}");
+            }
+            // Followed move by move until it repeats.
+            let frequency = 0.05;
+            let (found, mut stepped) = (steady(frequency), soft.clone());
+            stepped.apply(&wait(1e4)).unwrap();
+            let (count, mut before, mut works) = (80, [0.0; 2], [0.0; 2]);
+            for _ in 0..6 {
+                for part in 1..=count {
+                    let angle = std::f64::consts::TAU * f64::from(part) / f64::from(count);
+                    let duration = 1.0 / (frequency * f64::from(count));
+                    stepped.apply_within(&to(amplitude * angle.sin(), duration), 1e-3).unwrap();
+                }
+                let state = stepped.state();
+                let all = [state.dissipated_energy, state.viscous_work.unwrap()];
+                works = [0, 1].map(|of| all[of] - before[of]);
+                before = all;
+            }
+            let expected = [found.dissipated_energy, found.viscous_work.unwrap()];
+            for (work, expected) in works.into_iter().zip(expected) {
+                let error = (work - expected).abs() / (4.0 * limit * amplitude);
+                assert!(error < 2e-3, "{profile:?} {share}: {works:?} {expected:?} {error}");
+            }
+        }
     }
 }
 
