@@ -7,7 +7,9 @@ use stickslip_mechanics::unit_prefix;
 const INDENT: usize = 2;
 const NAMES: usize = 34;
 /// Columns that a table of rows begins with, those of the most interest first; the others follow by their names.
-const FIRST: [&str; 10] = [
+const FIRST: [&str; 12] = [
+    "time",
+    "frequency",
     "displacement",
     "force",
     "stick_radius",

@@ -29,7 +29,7 @@ async fn every_endpoint_answers_the_client() {
     assert_eq!(moved.sequence, 1);
     assert!(moved.state.force > 0.0 && moved.state.regime == Regime::PartialSlip && moved.stress.is_none());
     let path = PathRequest {
-        path: Path::FallingAmplitude(FallingAmplitude { reversals: 3, amplitude: None }),
+        path: Path::FallingAmplitude(FallingAmplitude { reversals: 3, amplitude: None }).into(),
         stress: Some(StressRequest { points: Some(5), ..StressRequest::default() }),
         steps: Steps::All,
         tolerance: None,

@@ -38,7 +38,7 @@ async fn next_state(events: &mut Events<'_>) -> StateEvent {
 
 fn path(moves: usize) -> PathRequest {
     let displacement = (0..moves).map(|index| 2e-7 * (index as f64 * 2.399).sin()).collect();
-    PathRequest { path: Path::Displacement(displacement), stress: None, steps: Steps::Last, tolerance: None }
+    PathRequest { path: Path::Displacement(displacement).into(), stress: None, steps: Steps::Last, tolerance: None }
 }
 
 /// The moves beyond `after` by the history.

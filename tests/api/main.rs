@@ -44,4 +44,5 @@ mod sweeps;
 mod table_files;
 mod tls;
 mod unread_bodies;
+mod viscoelastic;
 mod warnings;

@@ -127,7 +127,7 @@ impl Server {
 
 /// A path through moves, of whose states only the last is requested.
 pub fn along(moves: Vec<Move>) -> PathRequest {
-    PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::Last, tolerance: None }
+    PathRequest { path: Path::Moves(moves).into(), stress: None, steps: Steps::Last, tolerance: None }
 }
 
 /// A contact that is not stored yet.

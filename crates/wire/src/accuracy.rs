@@ -1,6 +1,6 @@
 //! The body of `POST /accuracy` and its reply.
 
-use super::plane::SimulatedPath;
+use super::path::TimedSimulatedPath;
 use super::simulate::{Rings, SPRINGS, SimulateRequest, Solver, Springs, in_plane, most_springs};
 use crate::prelude::*;
 
@@ -23,7 +23,7 @@ pub struct AccuracyRequest {
     /// The contact.
     pub contact: ContactDefinition,
     /// The path, along a line or in the plane.
-    pub path: SimulatedPath,
+    pub path: TimedSimulatedPath,
     /// Where the shear stress at the end of the path is compared; if left out, at 200 radii evenly spaced from the
     /// centre to the edge. `fields`, if given, must include `shear`; only the shear stress is compared.
     pub stress: Option<StressRequest>,
@@ -174,6 +174,9 @@ impl Document for AccuracyRequest {
         faults.needs_round_contact(setup.as_ref(), JsonPath::Root.member("contact").member("profile"), SPRINGS);
         let plan = self.path.check(false, JsonPath::Root.member("path"), faults).map(along_its_line);
         let plane = if let Some(Plan::Plane(plane)) = &plan { Some(plane) } else { None };
+        if let Some(Plan::Timed(..)) = &plan {
+            faults.unanswerable(JsonPath::Root.member("path").member("duration"), Error::NoMemory);
+        }
         if let Some(Plan::Twist(_)) = &plan {
             faults
                 .add(JsonPath::Root.member("path"), "solvers are compared on paths along the surface, without a twist");

@@ -1,6 +1,7 @@
 //! Moves, and paths of moves.
 
 mod cycles;
+mod timed;
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::{Normal, Tangential};
@@ -10,6 +11,7 @@ use crate::prelude::*;
 
 pub(crate) use cycles::PHASE;
 pub use cycles::{Cycles, CyclicPath, FirstTurn, NormalOscillation};
+pub use timed::{Timed, TimedPath, TimedSimulatedPath};
 
 /// Reversals of an oscillation that dies away; each is one move, and one more ends the path at zero.
 const REVERSALS: RangeInclusive<usize> = 1..=99_999;
@@ -113,6 +115,8 @@ pub enum Plan {
     Plane(PlanarPlan),
     /// Moves of a contact that is twisted, which `POST /simulate` follows.
     Twist(TwistPlan),
+    /// Moves along a line that take this long, s, unless they say so themselves.
+    Timed(Box<Plan>, f64),
 }
 
 impl Move {
@@ -204,6 +208,7 @@ impl Plan {
             Plan::Observations(observations) => observations.len(),
             Plan::Plane(plane) => plane.moves.len(),
             Plan::Twist(twist) => twist.moves.len(),
+            Plan::Timed(plan, _) => plan.length(),
         }
     }
 
@@ -214,6 +219,7 @@ impl Plan {
             Plan::Cycles(cycles) if cycles.is_curved() => cycles.length(),
             Plan::Single(step) => usize::from(step.is_curved()),
             Plan::Twist(twist) => twist.curved,
+            Plan::Timed(plan, _) => plan.curved(),
             Plan::Displacement(_)
             | Plan::Force(_)
             | Plan::FallingAmplitude(_)
@@ -239,6 +245,14 @@ impl Plan {
             Plan::Observations(_) => format!("/observations/{index}/displacement"),
             Plan::Plane(plane) => plane.place_of(index, quantity),
             Plan::Twist(twist) => twist.place_of(index, quantity),
+            Plan::Timed(plan, _) => {
+                let own = matches!(&**plan, Plan::Moves(moves) if moves[index].duration.is_some());
+                if quantity == Some(Quantity::Duration) && !own {
+                    format!("/path{member}")
+                } else {
+                    plan.place_of(index, quantity)
+                }
+            }
         }
     }
 }

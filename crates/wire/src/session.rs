@@ -4,6 +4,7 @@ use super::definition::{Adhesion, PRONY_TERMS, PronyTerm};
 use super::document::checked_alone;
 use super::limits::Characters;
 use super::line_profiles::BulkPerForce;
+use super::path::TimedPath;
 use super::protocol::Relaxation;
 use crate::prelude::*;
 
@@ -57,7 +58,6 @@ pub struct MoveRequest: Default {
     pub force: Option<f64> = range::FORCE,
     /// Indentation, m; below zero the bodies are apart and the slip history is lost.
     pub indentation: Option<f64> = range::INDENTATION,
-    /// Normal force, N.
     /// Normal force, N; below zero, if it is no increment, only with `adhesion`.
     pub normal_force: Option<f64> = range::FORCE,
     /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
@@ -76,7 +76,7 @@ pub struct MoveRequest: Default {
 #[schema(example = json!({"path": {"displacement": [1e-7, -1e-7, 0.0]}}))]
 pub struct PathRequest {
     /// The path.
-    pub path: Path,
+    pub path: TimedPath,
     /// Ask for stresses at the end of the path.
     pub stress: Option<StressRequest>,
     /// Which states to return.

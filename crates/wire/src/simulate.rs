@@ -2,7 +2,8 @@
 
 use super::definition::member_of_law;
 use super::limits::{SPRING_SEARCH, SPRING_STEPS};
-use super::plane::{PlanarPlan, SimulatedPath};
+use super::path::TimedSimulatedPath;
+use super::plane::PlanarPlan;
 use super::subsurface::{Subsurface, SubsurfaceRequest, SubsurfaceTask};
 use crate::prelude::*;
 
@@ -23,7 +24,7 @@ pub struct SimulateRequest {
     /// The contact.
     pub contact: ContactDefinition,
     /// The path.
-    pub path: SimulatedPath,
+    pub path: TimedSimulatedPath,
     /// Ask for stresses at the end of the path.
     pub stress: Option<StressRequest>,
     /// Ask for the extrema of the shear stress at the end of the path.

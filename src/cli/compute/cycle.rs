@@ -1,4 +1,4 @@
-//! `stickslip cycle --map`: a fretting map of the body in the file.
+//! `stickslip cycle --map` and `--frequency`: a fretting map of the body in the file, or its cycles at frequencies.
 
 use std::path::Path;
 
@@ -19,6 +19,10 @@ pub struct CycleFlags {
     /// in their logarithm. It is printed as `csv` unless the format is named.
     #[arg(long, value_name = "FROM:TO:COUNT", value_parser = loads)]
     map: Option<FrettingMap>,
+    /// Frequencies, Hz, of bodies with memory: a row for each amplitude at each of them. Printed as `csv` unless the
+    /// format is named.
+    #[arg(long, value_name = "HZ,...", value_delimiter = ',', conflicts_with = "map")]
+    frequency: Vec<f64>,
 }
 
 /// The loads of a map as the command line has them.
@@ -41,11 +45,13 @@ fn loads(text: &str) -> Result<FrettingMap, &'static str> {
 impl Flags for CycleFlags {
     fn body(self, file: Option<&Path>) -> Result<Body, CommandError> {
         let text = read(file.unwrap_or(Path::new("-")))?;
-        let Some(map) = self.map else { return Ok(Body { text, ..Body::default() }) };
+        let (name, value) = match self.map {
+            Some(map) => ("map", json!(map)),
+            None if self.frequency.is_empty() => return Ok(Body { text, ..Body::default() }),
+            None => ("frequency", json!(self.frequency)),
+        };
         let mut body: Value = parsed(&text)?;
-        body.as_object_mut()
-            .ok_or_else(|| "the body must be a JSON object".to_owned())?
-            .insert("map".to_owned(), json!(map));
+        body.as_object_mut().ok_or_else(|| "the body must be a JSON object".to_owned())?.insert(name.to_owned(), value);
         Ok(Body { text: body.to_string().into_bytes(), format: Some(Format::Csv), ..Body::default() })
     }
 }

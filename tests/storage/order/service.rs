@@ -131,7 +131,8 @@ async fn send(client: &Client, id: Uuid, request: &Request) -> Result<Reply, NoR
         }
         Operation::Advance(steps) => {
             let moves = steps.iter().copied().map(step).collect();
-            let path = PathRequest { path: Path::Moves(moves), stress: None, steps: Steps::All, tolerance: None };
+            let path =
+                PathRequest { path: Path::Moves(moves).into(), stress: None, steps: Steps::All, tolerance: None };
             let reply = client.path(id, &path, &options).await;
             let displacements = |states: Vec<State>| states.iter().map(|state| units(state.displacement)).collect();
             reply.map(|reply| Reply::Advanced(reply.sequence, displacements(reply.steps)))

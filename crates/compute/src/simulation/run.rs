@@ -193,6 +193,13 @@ fn moves<'a>(
     protocol: Option<&'a Protocol>,
 ) -> Result<Box<dyn Iterator<Item = (Move, mechanics::Move)> + Send + 'a>, Failure> {
     let moves: Box<dyn Iterator<Item = Move> + Send + 'a> = match plan {
+        Plan::Timed(plan, duration) => {
+            let take = |(step, _): (Move, mechanics::Move)| {
+                let step = Move { duration: Some(step.duration.unwrap_or(*duration)), ..step };
+                (step, step.step())
+            };
+            return Ok(Box::new(moves(plan, contact, protocol)?.map(take)));
+        }
         Plan::Twist(twist) => return Ok(Box::new(twist.moves.iter().map(|step| (Move::default(), *step)))),
         Plan::Moves(moves) => Box::new(moves.iter().copied()),
         Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
@@ -232,6 +239,8 @@ pub fn cycle_moves(plan: &Plan, contact: &Contact) -> Result<Vec<mechanics::Move
 /// for it.
 fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Error) -> String {
     let named = match (plan, error) {
+        (Plan::Timed(..), _) if quantity(error) == Some(Quantity::Duration) => Some(Quantity::Duration),
+        (Plan::Timed(plan, _), _) => return place(plan, index, step, error),
         (Plan::Cycles(_), mechanics::Error::ForceExceedsFriction { .. }) => Some(Quantity::Force),
         (Plan::Cycles(_), mechanics::Error::BeyondProfile { .. }) => Some(Quantity::ContactRadius),
         (Plan::Cycles(_), _) => quantity(error),

@@ -11,7 +11,9 @@ pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonan
 use stickslip_mechanics::cycle;
 use stickslip_mechanics::cycle::OscillatingLoad;
 
-use crate::limits::{BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS};
+use self::studies::FREQUENCY;
+use crate::definition::member_of_law;
+use crate::limits::{BEST_LOADS, CYCLE_AMPLITUDES, CYCLE_RADII, HARMONICS, MAP_CYCLES};
 use crate::path::NormalOscillation;
 use crate::prelude::*;
 use crate::stress::{STRESS_PLACES, STRESS_RADII};
@@ -32,6 +34,11 @@ pub struct CycleRequest {
     pub contact: ContactDefinition,
     /// What is prescribed as a cosine, and its amplitudes.
     pub drive: CycleDrive,
+    /// Frequency, Hz, or a list of frequencies with the cycles of all amplitudes for each: of bodies with `prony`,
+    /// whose cycles depend on it. The load has then been held for long: the normal force of a preload, or its indentation.
+    /// Only a displacement is driven, and of the other options only `harmonics` is allowed. At most 100 000 cycles.
+    #[schema(value_type = Option<f64>)]
+    pub frequency: Option<Amplitudes> = Within(FREQUENCIES, FREQUENCY),
     /// A machine in series with the contact: a displacement amplitude is then that of the machine.
     pub machine: Option<Machine>,
     /// Ask for the harmonics from the first to this one.
@@ -77,10 +84,10 @@ choices! {
 pub enum CycleDrive {
     /// Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
     #[schema(value_type = f64)]
-    "displacement" => Displacement(Amplitudes) = Within(Range { min: 0.0, ..range::DISPLACEMENT }),
+    "displacement" => Displacement(Amplitudes) = Within(CYCLE_AMPLITUDES, Range { min: 0.0, ..range::DISPLACEMENT }),
     /// Amplitude of the tangential force, N; below μ F_N.
     #[schema(value_type = f64)]
-    "force" => Force(Amplitudes) = Within(Range { min: 0.0, ..range::FORCE }),
+    "force" => Force(Amplitudes) = Within(CYCLE_AMPLITUDES, Range { min: 0.0, ..range::FORCE }),
 }
 }
 
@@ -91,23 +98,26 @@ impl Numbers for Vec<f64> {
     const EXPECTED: &'static str = "a number or an array of numbers";
 }
 
-/// The limits of amplitudes.
-struct Within(Range);
+/// Frequencies of a list.
+const FREQUENCIES: RangeInclusive<usize> = 1..=1_000;
+
+/// The limits of a number, and of a list of so many.
+struct Within(RangeInclusive<usize>, Range);
 
 impl Limit<Amplitudes> for Within {
     fn keywords(&self) -> Value {
         // Some keywords are for a number, the others for a list: JSON Schema applies each to its own type.
-        let mut keywords = Limit::<Vec<f64>>::keywords(&Array(CYCLE_AMPLITUDES, self.0));
+        let mut keywords = Limit::<Vec<f64>>::keywords(&Array(self.0.clone(), self.1));
         keywords["type"] = json!(["number", "array"]);
         keywords["items"]["type"] = json!("number");
-        (keywords["minimum"], keywords["maximum"]) = (json!(self.0.min), json!(self.0.max));
+        (keywords["minimum"], keywords["maximum"]) = (json!(self.1.min), json!(self.1.max));
         keywords
     }
 
     fn check(&self, value: &Amplitudes, at: JsonPath<'_>, faults: &mut Faults) {
         match value {
-            Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.0),
-            Amplitudes::Many(amplitudes) => Array(CYCLE_AMPLITUDES, self.0).check(amplitudes, at, faults),
+            Amplitudes::One(amplitude) => faults.number(at, *amplitude, &self.1),
+            Amplitudes::Many(amplitudes) => Array(self.0.clone(), self.1).check(amplitudes, at, faults),
         }
     }
 }
@@ -157,6 +167,8 @@ pub struct CycleTask {
     pub best_load: Option<BestLoadStudy>,
     /// The loads of a fretting map.
     pub map: Option<FrettingMap>,
+    /// The frequencies, Hz, of bodies with memory; empty for elastic bodies.
+    pub frequencies: Vec<f64>,
     /// JSON pointer to the drive.
     drive_at: &'static str,
 }
@@ -209,6 +221,7 @@ impl CycleTask {
             response: None,
             best_load: None,
             map: None,
+            frequencies: Vec::new(),
             drive_at,
         })
     }
@@ -224,7 +237,8 @@ impl CycleTask {
 
     /// How many cycles there are.
     pub fn rows(&self) -> usize {
-        self.drives().len().saturating_mul(self.map.map_or(1, |map| map.normal_force.count))
+        let times = self.map.map_or(1, |map| map.normal_force.count).saturating_mul(self.frequencies.len().max(1));
+        self.drives().len().saturating_mul(times)
     }
 
     /// The JSON pointer to the amplitude of this index.
@@ -248,7 +262,7 @@ impl CycleTask {
 }
 
 impl Document for CycleRequest {
-    type Checked = (ContactDefinition, SharedSetup, CycleTask);
+    type Checked = (ContactDefinition, FrictionSetup, CycleTask);
 
     fn profile(&self) -> Option<DefinedProfile<'_>> {
         Some(self.contact.defined_profile("/contact/profile"))
@@ -257,10 +271,19 @@ impl Document for CycleRequest {
     fn checked(self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let CycleRequest { contact, drive, machine, harmonics, work_density, normal, tolerance, .. } = self;
         let (response, best_load, map) = (self.frequency_response, self.best_load, self.map);
-        let setup = contact.check(JsonPath::Root.member("contact"), profiles, faults);
+        let setup = contact.check_any(JsonPath::Root.member("contact"), profiles, faults);
         let stiffness = machine.map(|machine| machine.stiffness);
         let task = CycleTask::new((drive, "/drive"), stiffness, harmonics, (work_density, "/work_density"), faults);
         let at = |name| JsonPath::Root.member(name);
+        let others = [
+            ("machine", stiffness.is_some()),
+            ("work_density", task.as_ref().is_some_and(|task| task.radii() > 0)),
+            ("normal", normal.is_some()),
+            ("frequency_response", response.is_some()),
+            ("best_load", best_load.is_some()),
+            ("map", map.is_some()),
+        ];
+        check_memory(setup.as_ref(), self.frequency.as_ref(), (task.as_ref(), &others), faults);
         let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         let load = normal.and_then(|normal| normal.swing(at("normal"), faults));
         if best_load.is_some() && task.as_ref().is_some_and(|task| task.drives().len() > *BEST_LOADS.end()) {
@@ -289,7 +312,51 @@ impl Document for CycleRequest {
         }
         let normal = load.map(|load| (load, tolerance));
         let response = response.map(|response| (response, tolerance));
-        let task = task.map(|task| CycleTask { normal, response, best_load, map, ..task });
+        let frequencies = self.frequency.map_or_else(Vec::new, |frequency| frequency.all().to_vec());
+        let task = task.map(|task| CycleTask { normal, response, best_load, map, frequencies, ..task });
         setup.zip(task).map(|(setup, task)| (contact, setup, task))
+    }
+}
+
+/// Notes frequencies of elastic bodies, bodies with memory without one, and what their cycles do not have.
+fn check_memory(
+    setup: Option<&FrictionSetup>,
+    frequency: Option<&Amplitudes>,
+    (task, others): (Option<&CycleTask>, &[(&'static str, bool)]),
+    faults: &mut Faults,
+) {
+    let (Some(setup), at) = (setup, |name| JsonPath::Root.member(name)) else { return };
+    match (&setup.friction.memory, frequency) {
+        (Some(_), None) => {
+            faults.add(at("frequency"), "missing: the cycles of bodies with memory depend on it, Hz");
+        }
+        (None, Some(_)) => {
+            let detail = "elastic cycles depend on no frequency: leave this out, or give the contact `prony`";
+            faults.add(at("frequency"), detail);
+        }
+        (None, None) => {
+            if let Err(error) = setup.clone().coulomb("this computation") {
+                faults.unanswerable(at("contact").member(member_of_law(&error)), error);
+            }
+        }
+        (Some(prony), Some(frequency)) => {
+            if prony.is_fluid() {
+                faults.unanswerable(at("contact").member("prony"), Error::FluidUnderLoad);
+            }
+            for (name, _) in others.iter().filter(|(_, asked)| *asked) {
+                faults.add(at(name), format_args!("`{name}` is not available for bodies with memory: leave it out"));
+            }
+            let Some(task) = task else { return };
+            if task.is_force_driven() {
+                let detail = "not available for bodies with memory: drive the displacement, or follow a path in time";
+                faults.add(at("drive").member("force"), detail);
+            }
+            let (cycles, times) = (task.drives().len(), frequency.all().len());
+            if cycles.saturating_mul(times) > MAP_CYCLES {
+                let detail =
+                    format_args!("{times} frequencies of {cycles} amplitudes: allowed are {MAP_CYCLES} cycles");
+                faults.add(at("frequency"), detail);
+            }
+        }
     }
 }

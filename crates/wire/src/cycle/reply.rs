@@ -10,7 +10,7 @@ replies! {
 pub struct CycleReply omits Option {
     /// The contact at its load; in a map, at its preload.
     pub contact: ContactSummary,
-    /// The cycles, in the order of the amplitudes; in a map load by load.
+    /// The cycles, in the order of the amplitudes; in a map load by load, with frequencies one by one.
     pub cycles: Vec<SteadyCycle>,
     /// The oscillations of a mass on the contact, if asked for.
     pub frequency_response: Option<Resonance>,
@@ -22,9 +22,12 @@ pub struct CycleReply omits Option {
 
 /// One steady cycle.
 pub struct SteadyCycle: Default omits Option {
-    /// Normal force, N; only in a map.
+    /// Frequency, Hz; only of bodies with `prony`.
+    pub frequency: Option<f64>,
+    /// Normal force, N; only in a map, and of bodies with `prony`, that to which they have relaxed.
     pub normal_force: Option<f64>,
-    /// Displacement amplitude of the indenter at which gross slip begins under this load, m; only in a map.
+    /// Displacement amplitude of the indenter at which gross slip begins under this load, m; only in a map, and of
+    /// bodies with `prony`, whose slow cycles have it.
     pub gross_slip_displacement: Option<f64>,
     /// Amplitude of the displacement of the indenter, m.
     pub displacement_amplitude: f64,
@@ -32,16 +35,18 @@ pub struct SteadyCycle: Default omits Option {
     pub force_amplitude: f64,
     /// Amplitude of the displacement at the machine, m; only with `machine`.
     pub machine_amplitude: Option<f64>,
-    /// Friction work of a cycle, J: the area of the force-displacement loop.
+    /// Friction work of a cycle, J: the area of the force-displacement loop, without `viscous_work`.
     pub dissipated_energy: f64,
+    /// Work of the tangential force that the bodies dissipate in a cycle by their memory, J, if they have `prony`.
+    pub viscous_work: Option<f64>,
     /// The largest elastic energy of the tangential deformation in a cycle, J.
     pub max_elastic_energy: f64,
     /// Force amplitude over displacement amplitude of the indenter, N/m; at zero amplitude the tangent stiffness.
     pub secant_stiffness: f64,
     /// Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction.
     pub tangent_stiffness: f64,
-    /// Dissipated energy over 2π times the largest elastic energy, a pure number; `null` where the indenter slides and
-    /// nothing is stored, as without friction and without load.
+    /// Dissipated energy, and viscous work, over 2π times the largest elastic energy, a pure number; `null` where the
+    /// indenter slides and nothing is stored, as without friction and without load.
     #[serde_with(skip_apply)]
     pub loss_factor: Option<f64>,
     /// Displacement at zero force over the amplitude of the indenter, a pure number; `null` where the indenter moves

@@ -22,8 +22,8 @@ pub struct BestLoadStudy: Copy, Default {
 }
 }
 
-/// A frequency of the force.
-const FREQUENCY: Range = Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 };
+/// A frequency.
+pub(super) const FREQUENCY: Range = Range { quantity: Quantity::Number, unit: "Hz", min: 1e-6, max: 1e12 };
 
 replies! {
 /// Steady oscillations of a mass on the contact.

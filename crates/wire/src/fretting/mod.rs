@@ -11,7 +11,7 @@ use stickslip_mechanics::subsurface::Side;
 
 use crate::definition::of_body;
 use crate::limits::{FRETTING_MOVES, SUBSURFACE_POINTS};
-use crate::path::PHASE;
+use crate::path::{PHASE, TimedPath};
 use crate::prelude::*;
 use crate::subsurface::{Places, SubsurfaceLine, SubsurfacePlane, SubsurfaceSurface, poisson_ratio};
 
@@ -33,7 +33,7 @@ pub struct FrettingRequest {
     /// The contact.
     pub contact: ContactDefinition,
     /// A path of at most 200 moves that ends where it began, at least when it is repeated.
-    pub path: Path,
+    pub path: TimedPath,
     /// The body that is rated.
     pub body: BodyName,
     /// Poisson's ratio of the body, a pure number; it may be left out if the material has `bodies`.
@@ -223,6 +223,9 @@ impl Document for FrettingRequest {
         let setup = self.contact.check(at("contact"), profiles, faults);
         faults.needs_stress_field(setup.as_ref(), at("contact").member("profile"));
         let plan = self.path.check(at("path"), faults);
+        if let Some(Plan::Timed(..)) = &plan {
+            faults.unanswerable(at("path").member("duration"), Error::NoMemory);
+        }
         if let Some(plan) = &plan {
             let most = *FRETTING_MOVES.end();
             if plan.length() > most {

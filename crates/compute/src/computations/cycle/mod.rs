@@ -3,8 +3,9 @@
 mod map;
 mod steady;
 mod studies;
+mod timed;
 
-use stickslip_mechanics::{Move, Tangential};
+use stickslip_mechanics::{Move, Preload, Tangential};
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::{CycleReply, CycleRequest, Harmonic, SteadyCycle};
 
@@ -24,6 +25,8 @@ const STEPPED_CYCLE_COST: u64 = 15_000_000;
 /// The same driven by a force or through a machine, where what is left falls with the square of the step alone and each
 /// step searches for a force.
 const SEARCHED_CYCLE_COST: u64 = 100_000_000;
+/// One cycle of bodies with memory at one frequency, for each term of their series.
+const TIMED_CYCLE_COST: u64 = 2_000_000;
 /// Points of each branch of a steady loop in a plot.
 const BRANCH_POINTS: usize = 200;
 
@@ -35,6 +38,8 @@ pub struct SteadyCycles {
     contact: Contact,
     reply: CycleReply,
     task: CycleTask,
+    /// What is held for long, of bodies with memory.
+    held: Preload,
 }
 
 impl Computation for Cycle {
@@ -45,9 +50,9 @@ impl Computation for Cycle {
         description: "Moves a contact back and forth at constant load until every cycle repeats the one before it, in \
                       closed form: a displacement or a force that is a cosine, directly or through a machine of finite \
                       stiffness. Returns work, stiffness, loss factor and slip for each amplitude and, if asked for, \
-                      the harmonics and the friction work per area, or the same cycles under many loads. Nothing is \
-                      stored.",
-        reply: "The cycles, one for each amplitude, under each load of a map",
+                      the harmonics and the friction work per area, or the same cycles under many loads. Of bodies \
+                      with memory, the cycles at each frequency. Nothing is stored.",
+        reply: "The cycles, one for each amplitude, under each load of a map or at each frequency",
         shows: "Only `columns` has the friction work per area.",
         ..About::TABLE
     };
@@ -83,6 +88,14 @@ impl Computation for Cycle {
                     "map": {"normal_force": {"from": 1.0, "to": 100.0, "count": 40}}
                 }),
             ),
+            example(
+                "frequencies",
+                "Bodies with memory: the loss over frequency and amplitude",
+                json!({
+                    "contact": rubber(), "drive": {"displacement": [1e-5, 1e-4]},
+                    "frequency": [0.01, 0.1, 1.0, 10.0, 100.0]
+                }),
+            ),
         ]
     }
 
@@ -95,12 +108,14 @@ impl Computation for Cycle {
     }
 
     fn cost((_, setup, task): &Task<Self>) -> Nanoseconds {
-        task.cost(&setup.profile, 0)
+        let terms = setup.friction.memory.as_ref().map_or(0, |prony| prony.terms().len() as u64);
+        let timed = TIMED_CYCLE_COST.saturating_mul(terms).saturating_mul(task.rows() as u64);
+        task.cost(&setup.profile, 0).saturating_add(if task.frequencies.is_empty() { 0 } else { timed })
     }
 
     fn run((_, setup, task): Task<Self>, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
-        let timer = Timer::start(stop);
-        SteadyCycles::of(contact(setup, "/contact")?, task, timer, stop)
+        let (timer, held) = (Timer::start(stop), setup.preload);
+        SteadyCycles::of(contact(setup, "/contact")?, task, held, timer, stop)
     }
 }
 
@@ -132,8 +147,19 @@ impl OnContact for CycleTask {
 
     fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
         cost::check(OnContact::cost(&self, contact.profile(), 0), stop)?;
-        SteadyCycles::of(contact.without_history(), self, Timer::start(stop), stop)
+        let held = Preload::NormalForce(contact.normal_force());
+        SteadyCycles::of(contact.without_history(), self, held, Timer::start(stop), stop)
     }
+}
+
+/// The contact of an example: a ball of rubber on a rigid plane.
+fn rubber() -> serde_json::Value {
+    json!({
+        "profile": {"type": "sphere", "radius": 0.01},
+        "material": {"bodies": [{"youngs_modulus": 3e6, "poisson_ratio": 0.5}, "rigid"]},
+        "friction": 0.8, "prony": [{"ratio": 0.6, "time": 0.1}],
+        "preload": {"indentation": 2e-4}
+    })
 }
 
 /// Frequencies of the oscillations of a mass.
@@ -142,12 +168,19 @@ fn frequencies(task: &CycleTask) -> usize {
 }
 
 impl SteadyCycles {
-    fn of(contact: Contact, task: CycleTask, timer: Timer<'_>, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
+    fn of(
+        contact: Contact,
+        task: CycleTask,
+        held: Preload,
+        timer: Timer<'_>,
+        stop: &dyn Stop,
+    ) -> Result<SteadyCycles, Failure> {
         let reply = match task.map {
+            _ if !task.frequencies.is_empty() => timed::cycles(&contact, &task, held, timer, stop)?,
             Some(map) => map::cycles(&contact, &task, map, timer, stop)?,
             None => steady::steady_cycles(&contact, &task, timer, stop)?,
         };
-        Ok(SteadyCycles { contact, reply, task })
+        Ok(SteadyCycles { contact, reply, task, held })
     }
 }
 
@@ -160,12 +193,16 @@ impl Borrow<CycleReply> for SteadyCycles {
 impl Outcome for SteadyCycles {
     type Reply = CycleReply;
 
-    /// A row for each amplitude, under each load of a map.
+    /// A row for each amplitude, under each load of a map or at each frequency.
     fn table(&self, _: &DisplayOptions) -> Option<Table<'_>> {
         let (cycles, task) = (&self.reply.cycles, &self.task);
         let column = |name, unit, of: fn(&SteadyCycle) -> f64| Column::floats(name, unit, move |row| of(&cycles[row]));
         let mut columns = Vec::new();
-        if task.map.is_some() {
+        let timed = !task.frequencies.is_empty();
+        if timed {
+            columns.push(Column::floats("frequency", "Hz", |row| cycles[row].frequency));
+        }
+        if timed || task.map.is_some() {
             columns.push(Column::floats("normal_force", "N", |row| cycles[row].normal_force));
             columns.push(Column::floats("gross_slip_displacement", "m", |row| cycles[row].gross_slip_displacement));
         }
@@ -174,8 +211,11 @@ impl Outcome for SteadyCycles {
         if task.stiffness.is_some() {
             columns.push(Column::floats("machine_amplitude", "m", |row| cycles[row].machine_amplitude));
         }
+        columns.push(column("dissipated_energy", "J", |cycle| cycle.dissipated_energy));
+        if timed {
+            columns.push(Column::floats("viscous_work", "J", |row| cycles[row].viscous_work));
+        }
         columns.extend([
-            column("dissipated_energy", "J", |cycle| cycle.dissipated_energy),
             column("max_elastic_energy", "J", |cycle| cycle.max_elastic_energy),
             column("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
             column("tangent_stiffness", "N/m", |cycle| cycle.tangent_stiffness),
@@ -197,7 +237,12 @@ impl Outcome for SteadyCycles {
     }
 
     fn picture(&self, _: &DisplayOptions) -> Option<Drawing> {
-        Some(Drawing::Plot(plot(&self.contact, &self.reply.cycles, &self.task)))
+        let SteadyCycles { contact, reply, task, held } = self;
+        Some(Drawing::Plot(if task.frequencies.is_empty() {
+            plot(contact, &reply.cycles, task)
+        } else {
+            timed::plot(contact, reply, task, *held)
+        }))
     }
 }
 

@@ -109,17 +109,19 @@ fn place_of_refused(error: &Error, load: &OscillatingLoad, task: &CycleTask, ind
     }
 }
 
-/// The row of a cycle under a load that oscillates.
-fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
+/// The row of a cycle that is the sum of states: under a load that oscillates, or of bodies with memory.
+pub(super) fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle {
     let moves = cycle.displacement_amplitude > 0.0;
     let stored = cycle.max_elastic_energy;
-    let loss = if stored > 0.0 { cycle.dissipated_energy / (TAU * stored) } else { f64::NAN };
+    let lost = cycle.dissipated_energy + cycle.viscous_work.unwrap_or(0.0);
+    let loss = if stored > 0.0 { lost / (TAU * stored) } else { f64::NAN };
     let secant = cycle.force_amplitude / cycle.displacement_amplitude;
     SteadyCycle {
         displacement_amplitude: cycle.displacement_amplitude,
         force_amplitude: cycle.force_amplitude,
         machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
         dissipated_energy: cycle.dissipated_energy,
+        viscous_work: cycle.viscous_work,
         max_elastic_energy: stored,
         secant_stiffness: if moves { secant } else { cycle.tangent_stiffness },
         tangent_stiffness: cycle.tangent_stiffness,

@@ -223,7 +223,7 @@ fn listed(path: &Path) -> Option<Vec<Move>> {
 }
 
 fn along_a_line(request: &SimulateRequest) -> Path {
-    request.path.clone().along_a_line().expect("these requests have no pairs")
+    request.path.path.clone().along_a_line().expect("these requests have no pairs")
 }
 
 /// The same path as a list of moves.
