@@ -225,6 +225,10 @@ class AsyncContact(AsyncOfContact, DefinedContact):
         """The definition with the present normal force as its preload."""
         return self.definition() | {"preload": {"normal_force": (await self.state()).normal_force}}
 
+    async def wait(self, duration: Quantity) -> results.MoveReply:
+        """Waits for this long, s: bodies with memory relax at the indentation and the displacement that they have."""
+        return await self.move(duration=duration)
+
     async def residual(self) -> results.Residual:
         """The local extrema of the shear stress, Pa."""
         found = (await self.stress(2, fields=["shear"], residual=True)).residual

@@ -36,10 +36,15 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Body(Part):
-    """An elastic body: Young's modulus, Pa, and Poisson's ratio, a pure number; or the name of a known material."""
+    """An elastic body: Young's modulus, Pa, and Poisson's ratio, a pure number; or the name of a known material.
+
+    With `prony` it has memory: the moduli are those of the instant, and each term is `(ratio, time)`, the part of them
+    that relaxes and its time, s. Moves of such a contact have a `duration`.
+    """
 
     youngs_modulus: Quantity
     poisson_ratio: Quantity | None = None
+    prony: Sequence[tuple[Quantity, Quantity] | Mapping[str, Any]] | None = None
 
     def __post_init__(self) -> None:
         if self.poisson_ratio is None:
@@ -52,6 +57,20 @@ class Body(Part):
                 raise quantities.refused("/poisson_ratio", detail)
             for name, value in zip(("youngs_modulus", "poisson_ratio"), constants_of(self.youngs_modulus), strict=True):
                 object.__setattr__(self, name, value)
+
+
+    def document(self) -> Document:
+        """The JSON document of its elastic constants; a contact has the memory of its bodies."""
+        return {name: value for name, value in super().document().items() if name != "prony"}
+
+    def memory(self) -> list[Document] | None:
+        """The terms of its Prony series."""
+        return None if self.prony is None else terms(self.prony)
+
+
+def terms(prony: Sequence[Any]) -> list[Document]:
+    """The terms of a Prony series, of objects or of pairs."""
+    return [dict(one) if isinstance(one, Mapping) else dict(zip(("ratio", "time"), one, strict=True)) for one in prony]
 
 
 #: A rigid body.
@@ -98,7 +117,20 @@ class ContactPart(Part):
             stated = " and ".join(preload) or "none"
             detail = f"a contact has one load, and {stated} is given: give one of {', '.join(self.PRELOADS)}"
             raise quantities.refused("/preload", detail)
+        given |= memory_of(material, given.get("prony"))
         return {"profile": given.pop("profile"), "material": material_of(material), "preload": preload} | given
+
+
+def memory_of(material: Any, prony: Any) -> Document:
+    """The memory of the bodies of a contact, which is given with them or beside them; both relax alike."""
+    bodies = [material] if isinstance(material, Body) else material if isinstance(material, Sequence) else []
+    given = [one.memory() for one in bodies if isinstance(one, Body)]
+    if all(one is None for one in given):
+        return {} if prony is None else {"prony": terms(prony)}
+    if prony is not None or any(to_document(one) != to_document(given[0]) for one in given):
+        detail = "both bodies relax alike: give each elastic body the same `prony`, or the contact alone"
+        raise quantities.refused("/prony", detail)
+    return {"prony": given[0]}
 
 
 def material_of(given: Any) -> Any:

@@ -132,6 +132,10 @@ class AnyContact(OfContact, DefinedContact):
         """The definition with the present normal force as its preload."""
         return self.definition() | {"preload": {"normal_force": self.state.normal_force}}
 
+    def wait(self, duration: Quantity) -> results.MoveReply:
+        """Waits for this long, s: bodies with memory relax at the indentation and the displacement that they have."""
+        return self.move(duration=duration)
+
     def residual(self) -> results.Residual:
         """The local extrema of the shear stress, Pa."""
         found = self.stress(2, fields=["shear"], residual=True).residual

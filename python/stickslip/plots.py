@@ -154,6 +154,15 @@ def _cycle(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = result.table()
     amplitude, work = columns["displacement_amplitude"], columns["dissipated_energy"]
     said: Said = ("friction work of a cycle", "J")
+    if "frequency" in columns:
+        for one in np.unique(amplitude):
+            chosen = np.flatnonzero(amplitude == one)
+            chosen = chosen[np.argsort(columns["frequency"][chosen])]
+            label = f"amplitude {one:.3g} m"
+            ax.plot(columns["frequency"][chosen], columns["loss_factor"][chosen], **({"label": label} | options))
+        _axes(ax, ("frequency", "Hz"), ("loss factor", ""), xscale="log")
+        ax.legend()
+        return
     if "normal_force" in columns:
         loads = np.unique(columns["normal_force"])
         order = np.lexsort((amplitude, columns["normal_force"]))

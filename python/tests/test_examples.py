@@ -100,3 +100,32 @@ def test_an_app_of_streamlit_shows_the_stick_radius_of_its_sliders() -> None:
     app.slider[1].set_value(50.0).run()
     # Mindlin (1949): a smaller displacement leaves a larger part stuck.
     assert float(app.metric[0].value.split()[0]) > float(before.split()[0])
+
+
+def test_a_soft_ball_loses_most_where_the_impact_takes_as_long_as_the_rubber_relaxes() -> None:
+    table = run("soft_impact")
+    least = table["restitution"].argmin()
+    assert 0.3 < table["time"].iloc[least] < 10.0
+    assert 0.5 < table["restitution"].iloc[least] < 0.9
+    # The time of contact goes with the speed to the power of -1/5, and the ends are nearer to elastic.
+    assert table["time"].is_monotonic_decreasing
+    assert table["restitution"].iloc[[0, -1]].min() > table["restitution"].iloc[least] + 0.03
+
+
+def test_a_seal_loses_most_near_the_relaxation_time_and_by_friction_where_it_slips() -> None:
+    table = run("seal_loss")
+    # One term of the ratio g: tan(delta) = g w T/(1 - g + w^2 T^2) is largest at w T = sqrt(1 - g).
+    assert table["frequency"].iloc[0] == pytest.approx(np.sqrt(0.4) / 0.01 / (2.0 * np.pi), rel=0.2)
+    assert table["friction"].is_monotonic_increasing
+    assert table["friction"].iloc[0] < 0.05
+    assert table["friction"].iloc[-1] > 0.5
+
+
+def test_a_soft_finger_lets_go_when_its_force_has_relaxed_to_what_the_weight_needs() -> None:
+    table = run("soft_finger")
+    last = table.iloc[-1]
+    # At a held indentation the load is that of the instant times R(t), and slips at weight = friction x load.
+    assert 0.8 * last["normal_force"] == pytest.approx(1.0, rel=1e-4)
+    relaxed = 1.0 - 0.2 * (1.0 - np.exp(-last["time"] / 0.1)) - 0.3 * (1.0 - np.exp(-last["time"] / 10.0))
+    assert last["normal_force"] == pytest.approx(2.0 * relaxed, rel=1e-4)
+    assert table["stick_radius"].iloc[-1] < 0.1 * table["contact_radius"].iloc[-1]
