@@ -58,7 +58,7 @@ class Accuracy(Result):
 
     work_error: float | None
     """Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
-    load of the path, a pure number; stated for rings only.
+    load of the path, a pure number; stated for rings and for curved paths.
     """
 
 

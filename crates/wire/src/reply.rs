@@ -150,7 +150,7 @@ pub struct Accuracy: Default omits Option {
     /// number, if it was asked for.
     pub subsurface_error: Option<f64>,
     /// Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
-    /// load of the path, a pure number; stated for rings only.
+    /// load of the path, a pure number; stated for rings and for curved paths.
     pub work_error: Option<f64>,
     /// Number of rings of the solver in the plane, or of springs across the radius of bodies with memory.
     pub count: Option<usize>,

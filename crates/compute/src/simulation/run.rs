@@ -69,12 +69,19 @@ pub(super) fn run<S: Solver>(
     let mut steps: Vec<State> = Vec::with_capacity(if all { simulation.plan.length() } else { 1 });
     // Gross slip erases the error of a curved path, but not that of the states before it.
     let (curved, mut path_error) = (simulation.plan.curved(), 0.0f64);
+    // mu F_N times the displacement of gross slip, at the largest load.
+    let slip_work = |solver: &S| {
+        let contact = solver.exact();
+        contact.friction() * contact.normal_force() * contact.gross_slip_displacement()
+    };
+    let mut most_work = slip_work(&solver);
     let mut far = FarMove::from(&solver);
     follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
         largest = largest.max(solver.contact_radius());
         far.reach(solver);
-        if curved > 0 && all {
-            path_error = path_error.max(solver.path_error());
+        if curved > 0 {
+            most_work = most_work.max(slip_work(solver));
+            path_error = if all { path_error.max(solver.path_error()) } else { path_error };
         }
         if all {
             steps.push(solver.state().into());
@@ -98,6 +105,8 @@ pub(super) fn run<S: Solver>(
     stop.check()?;
     let path_error = path_error.max(solver.path_error());
     accuracy.force_error += path_error - solver.path_error();
+    let by_curves = curved > 0 && S::KIND == SolverKind::Exact && !solver.exact().has_memory();
+    accuracy.work_error = (by_curves && most_work > 0.0).then(|| solver.exact().work_error() / most_work);
     // A table, which may have noise, has no vertical edge.
     let indentation = summary.indentation.max(solver.exact().indenter().level_at_edge(largest));
     let excess = excess_error(path_error, solver.exact().tolerance(simulation.tolerance), curved);

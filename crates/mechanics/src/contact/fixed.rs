@@ -71,8 +71,8 @@ impl Contact {
         let history = SlipHistory::of_turning_points(&Coulomb(&self.indenter), place, core_slope, turning_points)?;
         let normal_force = if level == self.preload.0 { self.preload.1 } else { self.normal_force_at(level) };
         let dissipated = DoubleDouble::from(dissipated);
-        let (path_error, path_kernel) = (0.0, 0.0);
+        let [path_error, path_kernel, work_error] = [0.0; 3];
         let before = self.clone_without_history();
-        Some(Contact { history, displacement, normal_force, dissipated, path_error, path_kernel, ..before })
+        Some(Contact { history, displacement, normal_force, dissipated, path_error, path_kernel, work_error, ..before })
     }
 }

@@ -181,6 +181,7 @@ impl Contact {
                 indentation_error: scale * self.indentation_error,
                 path_error: 0.0,
                 path_kernel: 0.0,
+                work_error: 0.0,
                 inverse_scale: DoubleDouble::from(1.0),
                 law: None,
                 viscoelastic: None,

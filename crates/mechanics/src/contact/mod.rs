@@ -65,6 +65,8 @@ pub struct Contact {
     pub(crate) indentation_error: f64,
     pub(crate) path_error: f64,
     pub(crate) path_kernel: f64,
+    /// Error of the friction work by curved moves, J.
+    pub(crate) work_error: f64,
     /// 1/m; zero without friction, when the surface carries nothing and the slip history does not follow the
     /// displacement.
     pub(crate) inverse_scale: DoubleDouble,
@@ -152,6 +154,7 @@ impl Contact {
             indentation_error,
             path_error: 0.0,
             path_kernel: 0.0,
+            work_error: 0.0,
             inverse_scale,
             law: None,
             viscoelastic: None,
@@ -207,6 +210,7 @@ impl Contact {
             dissipated: DoubleDouble::ZERO,
             path_error: 0.0,
             path_kernel: 0.0,
+            work_error: 0.0,
             ..self.clone_without_history()
         };
         contact.renew_law();

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | 4 | [`LAYOUT`] and, in the upper half, [`ENGINE`] |
 //! | 4 x 8 | indentation and normal force of the preload, 1/m (two parts): whether it is the same contact |
-//! | 7 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (two) |
+//! | 8 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (three) |
 //! | the rest | the slip history, see `slip_history/packed.rs`; of a contact with a law of its own shear strength, |
 //! | | work of adhesion, level (two parts), and of adhesion its bond and loss come before that of its tangential |
 //! | | problem; of a contact that is twisted, level and history of the twist, and the sign of the error before it; |
@@ -27,7 +27,7 @@ use crate::slip_history::limit::Coulomb;
 pub const ENGINE: u16 = 18;
 
 /// The version of the arrangement of the bytes.
-const LAYOUT: u16 = 2;
+const LAYOUT: u16 = 3;
 
 /// Writes the versions that bytes begin with.
 pub(crate) fn write_versions(bytes: &mut Vec<u8>) {
@@ -69,7 +69,7 @@ impl Contact {
             None => self.history.packed_length(),
         };
         let bodies = self.viscoelastic.as_ref().map_or(0, |bodies| bodies.packed_length());
-        2 * size_of::<u16>() + 11 * size_of::<f64>() + history + bodies
+        2 * size_of::<u16>() + 12 * size_of::<f64>() + history + bodies
     }
 
     /// The state with its history as bytes. They are read by [`Contact::unpack`] of the same program alone: another
@@ -83,6 +83,7 @@ impl Contact {
         self.normal_force.pack(&mut bytes);
         self.dissipated.pack(&mut bytes);
         self.path_error.pack(&mut bytes);
+        self.work_error.pack(&mut bytes);
         // Its sign tells that the contact is twisted.
         if self.is_twisted() { -self.path_kernel } else { self.path_kernel }.pack(&mut bytes);
         match self.law.as_deref() {
@@ -129,7 +130,7 @@ impl Contact {
         contact.normal_force = Packed::unpack(&mut reader)?;
         contact.dissipated = Packed::unpack(&mut reader)?;
         // The error of a stress may be without bound.
-        (contact.path_error, contact.path_kernel) = (reader.any()?, reader.any()?);
+        (contact.path_error, contact.work_error, contact.path_kernel) = (reader.any()?, reader.any()?, reader.any()?);
         if let Some(bodies) = &self.viscoelastic {
             let bodies = bodies.unpack(&mut reader, &self.indenter)?;
             contact.viscoelastic = Some(Box::new(bodies));

@@ -165,6 +165,13 @@ impl Contact {
         self.path_error
     }
 
+    /// The error that curved moves have left in the friction work, J: an estimate from above. What slips along a chord
+    /// in the place of the curve, and every move under a force that is off, adds to it.
+    #[must_use]
+    pub fn work_error(&self) -> f64 {
+        self.work_error
+    }
+
     /// Contact radius a, m; half-width of a line contact; of a profile without a stress field as
     /// [`Contact::stiffness_radius`].
     #[must_use]

@@ -103,6 +103,7 @@ impl Contact {
             let straight = within.max(quadrature) <= f64::EPSILON;
             let inner = self.history.edge().level;
             if !straight {
+                self.work_error += unit * panel.within * self.travel_to(&panel.end);
                 self.advance(&panel.elbow);
                 visit(0.5 * (done + next), self);
             }

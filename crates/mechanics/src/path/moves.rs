@@ -209,8 +209,19 @@ impl Contact {
         }
     }
 
+    /// How far points slip at most on the way to a point, m: as the indenter moves, and as the bound of slip does.
+    pub(crate) fn travel_to(&self, point: &PathPoint) -> f64 {
+        let moved = (point.displacement - self.displacement).value().abs();
+        let pressed = (point.indentation - self.history.edge().level).value().abs();
+        moved + self.scale() * pressed
+    }
+
     /// The straight move in displacement and indentation that every other move is made of.
     pub(crate) fn advance(&mut self, point: &PathPoint) {
+        if self.path_error > 0.0 {
+            let carried = self.friction * self.normal_force.max(point.normal_force);
+            self.work_error += self.path_error * carried * self.travel_to(point);
+        }
         self.displacement = point.displacement;
         self.normal_force = point.normal_force;
         let scaled_work =

@@ -9,6 +9,7 @@ mod coarse_tables;
 mod critical_distance;
 mod curved_moves;
 mod curved_tolerance;
+mod curved_work;
 mod cycles;
 mod deep_history;
 mod digits;

@@ -160,6 +160,7 @@ fn reply_template(simulation: &Simulation) -> SimulationReply {
         stress: simulation.stress.as_ref().map(|sampling| stress_template(sampling, line.is_some())),
         residual: simulation.residual.then(residual),
         protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
+        accuracy: Accuracy { work_error: (simulation.plan.curved() > 0).then_some(0.0), ..Accuracy::default() },
         // The stress below the surface is no output of a sweep.
         ..SimulateReply::default()
     })
