@@ -40,6 +40,9 @@ const BETTER: f64 = 0.5;
 /// Curvatures below this share of the other one, or so many standard errors, are those of a cylinder.
 const STRAIGHT: f64 = 0.02;
 const STRAIGHT_ERRORS: f64 = 3.0;
+/// Terms up to the second order, and with those of the fourth.
+const SECOND: usize = 6;
+const FOURTH: usize = 11;
 /// Rounds in which heights that are far off a paraboloid are left out.
 const ROUNDS: usize = 5;
 
@@ -225,17 +228,36 @@ fn has_second_harmonic(fitted: &Fitted, scaled: &Scaled, mean_curvature: f64) ->
     is_surely && harmonic.norm() > LEAST_HARMONIC * mean_curvature
 }
 
+/// The columns of 1, x, y, x^2/2, x y, y^2/2, and then of x^4 to y^4, at the places of some points.
+fn powers(points: &[[f64; 3]], columns: usize) -> DMatrix<f64> {
+    let mut powers = DMatrix::zeros(points.len(), columns);
+    for (place, &[x, y, _]) in points.iter().enumerate() {
+        let (xx, xy, yy) = (x * x, x * y, y * y);
+        let row = [1.0, x, y, 0.5 * xx, xy, 0.5 * yy, xx * xx, xx * xy, xx * yy, xy * yy, yy * yy];
+        row.iter().take(columns).enumerate().for_each(|(column, value)| powers[(place, column)] = *value);
+    }
+    powers
+}
+
+/// The second derivatives on the axis of the surface of the fourth order, without cubic terms: a body with two planes
+/// of symmetry has none.
+fn fourth_order(points: &[[f64; 3]]) -> Option<DVector<f64>> {
+    let matrix = powers(points, FOURTH);
+    let heights = DVector::from_iterator(points.len(), points.iter().map(|point| point[2]));
+    let found = matrix.tr_mul(&matrix).cholesky()?.solve(&matrix.tr_mul(&heights));
+    Some(found.rows(3, 3).into_owned())
+}
+
 /// The paraboloid through the heights, and the standard deviation of what it leaves, in the range of the heights.
 fn paraboloid(scaled: &Scaled, units: &Units) -> Option<(Paraboloid, f64)> {
     let mut chosen: Vec<[f64; 3]> =
         scaled.points.iter().zip(&scaled.of_surface).filter(|(_, of)| **of).map(|(point, _)| *point).collect();
-    let row = |&[x, y, _]: &[f64; 3]| [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y];
     let (mut found, mut covariance, mut deviation) = (DVector::zeros(6), DMatrix::zeros(6, 6), 0.0);
     for _ in 0..ROUNDS {
-        let matrix = DMatrix::from_fn(chosen.len(), 6, |place, column| row(&chosen[place])[column]);
+        let matrix = powers(&chosen, SECOND);
         let heights = DVector::from_iterator(chosen.len(), chosen.iter().map(|point| point[2]));
-        let inverse = (matrix.transpose() * &matrix).try_inverse()?;
-        found = &inverse * matrix.transpose() * &heights;
+        let inverse = matrix.tr_mul(&matrix).try_inverse()?;
+        found = &inverse * matrix.tr_mul(&heights);
         let residuals = &heights - &matrix * &found;
         let variance = residuals.norm_squared() / chosen.len().saturating_sub(6).max(1) as f64;
         // What a shape that is no paraboloid leaves, or correlated noise, goes on over many points in both directions.
@@ -259,6 +281,9 @@ fn paraboloid(scaled: &Scaled, units: &Units) -> Option<(Paraboloid, f64)> {
             break;
         }
     }
+    // A curvature that is not the same everywhere: what the terms of the fourth order change.
+    let off = fourth_order(&chosen).map_or_else(|| DVector::zeros(3), |other| other - found.rows(3, 3));
+    covariance.view_mut((3, 3), (3, 3)).ger(1.0, &off, &off, 1.0);
     let tensor = Matrix2::new(found[3], found[4], found[4], found[5]).symmetric_eigen();
     let order = if tensor.eigenvalues[0] >= tensor.eigenvalues[1] { [0, 1] } else { [1, 0] };
     let curvature = |index: usize| {

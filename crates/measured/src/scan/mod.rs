@@ -13,6 +13,7 @@
 
 mod axis;
 mod contact;
+mod correlated_noise;
 mod curve;
 mod diagnosis;
 mod edges;

@@ -7,7 +7,8 @@ use super::curve::{Curve, interval};
 use super::diagnosis::Diagnosis;
 use super::fit::{Fitted, Scaled};
 use super::{
-    Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, contact, noise, programme, start,
+    Column, DRAWN_POINTS, Error, Estimate, Orientation, Scan, ScanFit, Units, contact, correlated_noise, noise,
+    programme, start,
 };
 use crate::linear::dot;
 use crate::steps::step as rounding_step;
@@ -76,9 +77,11 @@ pub(super) fn finished(
     };
     let by_axis = other.map_or_else(|| vec![0.0; intervals], about_other);
     let systematic = [equations.change_of_halving(solution), fitted.without_scale.clone(), lift, by_axis];
+    let by_correlation = correlated_noise::covariance(fitted, scaled);
     let covariance = DMatrix::from_fn(intervals, intervals, |row, column| {
         let off: f64 = systematic.iter().map(|off: &Vec<f64>| off[row] * off[column]).sum();
-        variance * solution.inverse[(row, column)] + bend * bend * off
+        let correlated = by_correlation.as_ref().map_or(0.0, |covariance| covariance[(row, column)]);
+        variance * solution.inverse[(row, column)] + bend * bend * (off + correlated)
     });
     let standard_errors = contact::standard_errors(&curve, &covariance, &table.radius)?;
     // The radius of the curve that the scan shows: a tip too small for it could have any.
