@@ -18,6 +18,8 @@ use super::prelude::*;
 
 /// Moves that are read at a time.
 pub(super) const PAGE: usize = 80;
+/// How long followers wait for the reply to the one who has moved the contact.
+const AFTER_THE_REPLY: Duration = Duration::from_millis(1);
 /// How long to wait before trying again what may succeed later, as where the store is unreachable.
 pub(super) const RETRY_DELAY: Duration = Duration::from_secs(1);
 /// Attempts in a row to mark the cycles of a page that may take as long as a request may.
@@ -162,8 +164,9 @@ impl Feeder {
                 Ok(events) if events.is_empty() => {
                     self.failures = 0;
                     tokio::select! {
-                        // The sender stays while there is a receiver.
-                        _ = changed.changed() => {}
+                        // The sender stays while there is a receiver. The reply to the move goes first: the followers
+                        // may be so many that they take all threads for a while.
+                        _ = changed.changed() => tokio::time::sleep(AFTER_THE_REPLY).await,
                         () = self.feed.0.closed() => {}
                     }
                 }
