@@ -332,10 +332,14 @@ fn add_near<const SLOPE: bool>(cell: &Cell, span: &Span, weight: f64, radii: &[H
     for (radii, sums) in radii.chunks(LANES).zip(sums.chunks_mut(LANES)) {
         #[cfg(test)]
         call_count::add(|calls| if SLOPE { &mut calls.kernel_slope } else { &mut calls.kernel });
-        // Lanes left over repeat the last.
-        let squares = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].at.square);
-        let kernels = near.kernels::<LANES, SLOPE>(squares);
-        sums.iter_mut().zip(kernels).for_each(|(sum, kernel)| add_to(sum, weight * kernel));
+        if let ([held], [sum]) = (radii, &mut *sums) {
+            add_to(sum, weight * near.kernels::<1, SLOPE>([held.at.square])[0]);
+        } else {
+            // Lanes left over repeat the last.
+            let squares = std::array::from_fn(|lane| radii[lane.min(radii.len() - 1)].at.square);
+            let kernels = near.kernels::<LANES, SLOPE>(squares);
+            sums.iter_mut().zip(kernels).for_each(|(sum, kernel)| add_to(sum, weight * kernel));
+        }
     }
 }
 

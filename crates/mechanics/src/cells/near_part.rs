@@ -1,5 +1,7 @@
 //! The kernels of a part of a cell that is near: by the antiderivative of its series, or by a rule.
 
+use std::cell::OnceCell;
+
 use super::cell::{Cell, Part};
 use super::ring::StressRadius;
 use super::span::Span;
@@ -21,12 +23,13 @@ impl Cell {
 }
 
 /// A part of a cell whose kernels at several radii are asked for, with its series in units of its outer end.
-#[derive(Clone, Copy)]
 pub(super) struct NearPart<'a> {
     cell: &'a Cell,
     span: &'a Span,
     part: Part,
     terms: [f64; MOST_TERMS],
+    /// zeta^2 and gamma dzeta at the points of the rule, for the first radius that it serves and all others.
+    rule: OnceCell<[(f64, f64); 12]>,
 }
 
 impl NearPart<'_> {
@@ -38,7 +41,7 @@ impl NearPart<'_> {
             *term = unit * a;
             unit *= part.high / cell.high;
         }
-        NearPart { cell, span, part, terms }
+        NearPart { cell, span, part, terms, rule: OnceCell::new() }
     }
 
     /// The kernels at radii of these squares, m^2.
@@ -95,12 +98,14 @@ impl NearPart<'_> {
     }
 
     fn by_rule<const N: usize, const SLOPE: bool>(&self, kappa: [f64; N]) -> [f64; N] {
-        let Part { high, drop, .. } = self.part;
-        let places = TWELVE_POINTS.map(|(share, _)| high - drop * share);
-        let gammas = self.cell.gammas(places);
+        let rule = self.rule.get_or_init(|| {
+            let Part { high, drop, .. } = self.part;
+            let places = TWELVE_POINTS.map(|(share, _)| high - drop * share);
+            let gammas = self.cell.gammas(places);
+            std::array::from_fn(|index| (places[index] * places[index], TWELVE_POINTS[index].1 * drop * gammas[index]))
+        });
         let mut sums = [0.0; N];
-        for (index, (_, weight)) in TWELVE_POINTS.iter().enumerate() {
-            let (square, term) = (places[index] * places[index], weight * drop * gammas[index]);
+        for &(square, term) in rule {
             for lane in 0..N {
                 let distance = square - kappa[lane];
                 sums[lane] += term / if SLOPE { 2.0 * distance * distance.sqrt() } else { distance.sqrt() };
