@@ -6,7 +6,8 @@
 
 The problems are the documents of the folder `reference` of the repository (`--problems FOLDER` elsewhere). A code is a
 function that takes the name of a problem and the inputs of a case, and gives its outputs by name, or raises `Unstated`
-if it has no words for the problem: its cell then stays empty. To try your own code, call `run` with such a function.
+if it has no words for the problem: its cell then stays empty. To try your own code, name a file with such a function
+`code` by `--code FILE.py`; `reference/codes` has those of Tamaas, ContactMechanics, slippy and LAMMPS.
 
 Beside NumPy nothing is needed; this file runs alone, too (`python reference.py run --code cli=PROGRAM`), and draws the
 picture if matplotlib is installed.
@@ -15,6 +16,7 @@ picture if matplotlib is installed.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import json
 import math
 import os
@@ -40,8 +42,8 @@ Compute = Callable[[str, Document], Document]
 STATED = "stated_error"
 
 
-class Unstated(Exception):
-    """The code cannot state this problem."""
+class Unstated(NotImplementedError):
+    """The code cannot state this problem; any `NotImplementedError` says the same."""
 
 
 # ------------------------------------------------------------------------------------------------------ stickslip
@@ -267,10 +269,10 @@ def stickslip(compute: Compute) -> Code:
         found = steps(reply, "normal_force", "force", "indentation")
         return {name: values[-len(times) :] for name, values in found.items()} | stated(reply)
 
-    def struck(inputs: Document, speed: float, count: int) -> float:
-        """The velocity after an impact in so many steps; each iteration is one path of the contact."""
+    def struck(inputs: Document, speed: float, count: int, force: Array) -> tuple[float, Array]:
+        """The velocity after an impact in so many steps, and the forces; each iteration is one path of the contact."""
         moving, depth, duration = inputs["mass"] * 2 / 7, *impact(inputs, count)
-        h, force = duration / count, np.zeros(count - 1)
+        h, force = duration / count, np.interp(np.arange(1, count) / count, np.linspace(0, 1, len(force)), force)
         # A contact begins with an indentation, however small.
         contact = effective({**inputs, "indentation": 1e-6 * depth[0]})
         for _ in range(40):
@@ -280,17 +282,18 @@ def stickslip(compute: Compute) -> Code:
             reply = simulate(contact, path={"moves": moves})
             before, force = force, np.array([step["force"] for step in reply["steps"]])
             if np.abs(force - before).max() < 1e-13 * np.abs(force).max():
-                return float(velocity[-1])
+                return float(velocity[-1]), np.array([0.0, *force, 0.0])
         raise RuntimeError("the impact does not converge")
 
     def oblique_impact(inputs: Document) -> Document:
-        coarse, fine = (
-            np.array([struck(inputs, speed, count) for speed in inputs["tangential_velocities"]])
-            for count in (500, 1000)
-        )
+        found, change = [], 0.0
+        for speed in inputs["tangential_velocities"]:
+            coarse, forces = struck(inputs, speed, 250, np.zeros(2))
+            fine, _ = struck(inputs, speed, 500, forces)
+            found.append(fine + (fine - coarse) / 3)
+            change = max(change, abs(fine - coarse))
         unit = inputs["friction"] * inputs["normal_velocity"]
-        found = {"rebound_velocity": (fine + (fine - coarse) / 3).tolist(), "duration": [impact(inputs, 500)[1]]}
-        return {**found, STATED: float(np.abs(fine - coarse).max() / unit)}
+        return {"rebound_velocity": found, "duration": [impact(inputs, 250)[1]], STATED: change / unit}
 
     problems: dict[str, Callable[[Document], Document]] = {
         "oblique-impact": oblique_impact,
@@ -432,71 +435,24 @@ def capped_spring(problem: str, inputs: Document) -> Document:
     return {"normal_force": loads, "force": forces} if problem != "falling-amplitude" else {"force": forces[-1:]}
 
 
-def heights(profile: Document, r: Array) -> Array:
-    """f(r) of a shape, m; of a flat punch a step that nothing reaches."""
-    kind: str = profile["type"]
-    radius, slope = float(profile.get("radius", 0.0)), float(profile.get("slope", 0.0))
-    flat, tip = float(profile.get("flat_radius", 0.0)), float(profile.get("tip_radius", 1.0))
-    if kind == "exact_sphere":
-        return radius - np.sqrt(np.maximum(radius**2 - r**2, 0.0))
-    if kind == "power_law":
-        return np.asarray(profile["coefficient"] * r ** profile["exponent"])
-    if kind == "rounded_cone":
-        return slope * np.where(r < tip, r**2 / (2 * tip), r - tip / 2)
-    beyond = np.maximum(r - flat, 0.0)
-    if kind == "rounded_punch":
-        return np.asarray(beyond**2 / (2 * profile["edge_radius"]))
-    if kind in ("cone", "truncated_cone"):
-        return slope * beyond
-    if kind in ("sphere", "truncated_sphere"):
-        return np.maximum(r**2 - flat**2, 0.0) / (2 * radius)
-    if kind == "flat_punch":
-        return np.where(r < radius, 0.0, radius)
-    raise Unstated(kind)
-
-
-def tamaas(count: int = 256) -> Code:
-    """Tamaas, a periodic half-space on a grid that is sixteen contact radii wide: `pip install tamaas`.
-
-    It gives pressures. The shear stress of first loading is mu times the difference of two of them (Ciavarella 1998).
-    """
-    import tamaas as tm
-
-    tm.set_log_level(tm.LogLevel.warning)
-
-    def pressure(profile: Document, e_star: float, load: float, radii: list[float]) -> tuple[float, Array]:
-        # The largest radius that is asked for is near the edge.
-        side = 16 * max(radii) / 0.95
-        x = (np.arange(count) + 0.5) * side / count - side / 2
-        r = np.hypot(*np.meshgrid(x, x, indexing="ij"))
-        surface = -heights(profile, r)
-        model = tm.ModelFactory.createModel(tm.model_type.basic_2d, [side, side], [count, count])
-        model.E, model.nu = e_star, 0.0
-        tm.PolonskyKeerRey(model, surface - surface.mean(), 1e-10).solve(load / side**2)
-        found = np.array(model.traction)
-        # Along the row next to the axis; half a cell beside it.
-        row = found[count // 2]
-        at = np.interp(radii, r[count // 2, count // 2 :], row[count // 2 :])
-        return float(np.sqrt((found > 0).sum() / np.pi) * side / count), at
-
-    def code(problem: str, inputs: Document) -> Document:
-        if problem == "normal-contact":
-            if inputs["profile"]["type"] == "ellipsoid":
-                return {}
-            radius, found = pressure(inputs["profile"], inputs["e_star"], inputs["normal_force"], inputs["radii"])
-            return {"contact_radius": [radius], "pressure": found.tolist()}
-        if problem == "first-loading":
-            ball, radii, load = {"type": "sphere", "radius": inputs["radius"]}, inputs["radii"], inputs["normal_force"]
-            stuck = load - inputs["forces"][-1] / inputs["friction"]
-            whole, inner = (pressure(ball, inputs["e_star"], force, radii)[1] for force in (load, stuck))
-            return {"shear": (inputs["friction"] * (whole - inner)).tolist()}
-        raise Unstated(problem)
-
+def code_in(path: Path) -> Code:
+    """The function `code` of a file."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    if spec is None or spec.loader is None:
+        raise SystemExit(f"{path} is not a file of Python")
+    module = importlib.util.module_from_spec(spec)
+    # For files beside it.
+    sys.path.append(str(path.parent))
+    spec.loader.exec_module(module)
+    code: Code = module.code
+    print(f"{path.stem}: {getattr(module, 'VERSION', 'version not stated')}")
     return code
 
 
 def code_named(name: str) -> Code:
-    """A code by its name on the command line: `name` or `name=where`."""
+    """A code by its name on the command line: `name`, `name=where`, or a file of Python."""
+    if name.endswith(".py"):
+        return code_in(Path(name))
     kind, _, where = name.partition("=")
     if kind == "cli":
         return stickslip(by_program(where or "stickslip"))
@@ -508,9 +464,7 @@ def code_named(name: str) -> Code:
         return springs(int(where or 10_000))
     if kind == "capped-spring":
         return capped_spring
-    if kind == "tamaas":
-        return tamaas(int(where or 256))
-    raise SystemExit(f"{name} is no code; codes are cli, service, package, springs, capped-spring, tamaas")
+    raise SystemExit(f"{name} is no code; codes are cli, service, package, springs, capped-spring, and files FILE.py")
 
 
 # ---------------------------------------------------------------------------------------------------------- running
@@ -559,7 +513,7 @@ def solve(code: Code, problem: Document) -> Row:
                     worst = max(worst, error_of(expected, found[name]))
                 else:
                     missing.append(f"{case['name']}: {name}")
-    except Unstated:
+    except NotImplementedError:
         return Row(problem["id"], None, None, 0.0, [])
     return Row(problem["id"], worst, seconds, stated, missing)
 
@@ -610,8 +564,11 @@ def main(arguments: list[str] | None = None) -> int:
     """The command line."""
     parser = argparse.ArgumentParser(prog="python -m stickslip.reference", description="Runs the reference problems.")
     parser.add_argument("command", choices=["run"])
-    parser.add_argument("--code", action="append", required=True, help="cli[=PROGRAM], service[=URL], package, …")
+    parser.add_argument(
+        "--code", action="append", required=True, help="cli[=PROGRAM], service[=URL], package, FILE.py, …"
+    )
     parser.add_argument("--problems", type=Path, default=Path("reference"), help="the folder of the documents")
+    parser.add_argument("--results", type=Path, help="a file of results, which is read, extended and written")
     parser.add_argument("--markdown", help="a file for the table")
     parser.add_argument("--picture", help="a file for the picture, svg or png; needs matplotlib")
     parser.add_argument(
@@ -619,15 +576,18 @@ def main(arguments: list[str] | None = None) -> int:
     )
     asked = parser.parse_args(arguments)
     problems = read_problems(asked.problems)
-    table: Table = {}
+    kept = asked.results is not None and asked.results.exists()
+    table: Table = json.loads(asked.results.read_text(encoding="utf-8")) if kept else {}
     bad = []
     for name in asked.code:
         rows = list(run(code_named(name), problems))
-        table[name.partition("=")[0]] = {
+        table[Path(name.partition("=")[0]).stem] = {
             row.problem: (row.error, row.seconds) for row in rows if row.error is not None and row.seconds is not None
         }
         if asked.below is not None:
             bad += [f"{name}, {row.problem}: {text}" for row in rows for text in shortcomings(row, asked.below)]
+    if asked.results:
+        asked.results.write_text(json.dumps(table, indent=1) + "\n", encoding="utf-8")
     printed = markdown(table, problems)
     versions = ", ".join(sorted({problem["version"] for problem in problems}))
     print(f"reference problems {versions}; Python {platform.python_version()}, NumPy {np.__version__}\n")
