@@ -5,6 +5,7 @@ WORKDIR /src
 COPY Cargo.toml Cargo.lock LICENSE build.rs image ./
 COPY build ./build
 COPY .cargo ./.cargo
+COPY .ci/libraries ./.ci/
 COPY crates ./crates
 COPY python/Cargo.toml python/THIRD-PARTY.txt ./python/
 COPY python/src ./python/src
@@ -14,7 +15,7 @@ COPY openapi ./openapi
 ARG BUILD_COMMIT=unknown
 RUN ./image /image
 
-# Run: one program and the certificates of public authorities. No shell, not root, only the volume is writable.
+# Run: one program, libraries to copy from the image, and the certificates of public authorities. No shell, not root, only the volume is writable.
 FROM scratch
 COPY --from=build /image /
 COPY --from=build --chown=65532:65532 /image/data /data

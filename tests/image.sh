@@ -17,7 +17,7 @@ root=$2
 
 # All that there is, and nothing that it would need besides.
 files=$(cd "$root" && find . -not -type d | sort | tr '\n' ' ')
-[ "$files" = "./etc/ssl/certs/ca-certificates.crt ./licences/LICENSE ./licences/THIRD-PARTY.txt ./stickslip " ] || fail "unexpected files: $files"
+[ "$files" = "./etc/ssl/certs/ca-certificates.crt ./include/stickslip.h ./lib/libstickslip.a ./lib/libstickslip.so ./lib/libstickslip.so.0 ./libstickslip_fmu.so ./licences/LICENSE ./licences/THIRD-PARTY.txt ./stickslip " ] || fail "unexpected files: $files"
 if readelf --program-headers "$root/stickslip" | grep -q INTERP; then fail "the program is not static"; fi
 
 mount --bind "$root" "$root"

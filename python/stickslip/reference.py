@@ -441,8 +441,9 @@ def code_in(path: Path) -> Code:
     if spec is None or spec.loader is None:
         raise SystemExit(f"{path} is not a file of Python")
     module = importlib.util.module_from_spec(spec)
-    # For files beside it.
-    sys.path.append(str(path.parent))
+    # For files beside it, and not for those beside this one, which have names of other packages.
+    beside = Path(__file__).resolve().parent
+    sys.path[:] = [folder for folder in sys.path if Path(folder).resolve() != beside] + [str(path.parent)]
     spec.loader.exec_module(module)
     code: Code = module.code
     print(f"{path.stem}: {getattr(module, 'VERSION', 'version not stated')}")
@@ -501,7 +502,7 @@ class Row(NamedTuple):
 
 def solve(code: Code, problem: Document) -> Row:
     """A code on a problem."""
-    worst, seconds, stated, missing = 0.0, 0.0, 0.0, []
+    worst, seconds, stated, compared, missing = 0.0, 0.0, 0.0, 0, []
     try:
         for case in problem["cases"]:
             begin = time.perf_counter()
@@ -510,10 +511,13 @@ def solve(code: Code, problem: Document) -> Row:
             stated = max(stated, found.get(STATED, 0.0))
             for name, expected in case["outputs"].items():
                 if name in found:
+                    compared += 1
                     worst = max(worst, error_of(expected, found[name]))
                 else:
                     missing.append(f"{case['name']}: {name}")
     except NotImplementedError:
+        compared = 0
+    if not compared:
         return Row(problem["id"], None, None, 0.0, [])
     return Row(problem["id"], worst, seconds, stated, missing)
 
@@ -556,7 +560,7 @@ def picture(table: Table, path: str) -> None:
         errors = [max(error, 1e-17) for error, _ in row.values()]
         axes.loglog([seconds for _, seconds in row.values()], errors, "o", label=code)
     axes.set(xlabel="time of all cases of a problem (s)", ylabel="largest error")
-    axes.legend()
+    figure.legend(loc="outside right upper")
     figure.savefig(path)
 
 
@@ -581,7 +585,7 @@ def main(arguments: list[str] | None = None) -> int:
     bad = []
     for name in asked.code:
         rows = list(run(code_named(name), problems))
-        table[Path(name.partition("=")[0]).stem] = {
+        table[Path(name.partition("=")[0]).stem.removeprefix("with_")] = {
             row.problem: (row.error, row.seconds) for row in rows if row.error is not None and row.seconds is not None
         }
         if asked.below is not None:

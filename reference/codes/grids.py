@@ -14,13 +14,19 @@ def code_of(pressure):
             if inputs["profile"]["type"] == "ellipsoid":
                 return {}
             asked = (inputs[name] for name in ("profile", "e_star", "normal_force", "radii"))
-            radius, depth, found = pressure(*asked)
+            try:
+                radius, depth, found = pressure(*asked)
+            except ArithmeticError:
+                return {}
             depths = {} if depth is None else {"indentation": [depth]}
             return {"contact_radius": [radius], "pressure": found.tolist(), **depths}
         if problem == "first-loading":
             ball, radii, load = {"type": "sphere", "radius": inputs["radius"]}, inputs["radii"], inputs["normal_force"]
             stuck = load - inputs["forces"][-1] / inputs["friction"]
-            whole, inner = (pressure(ball, inputs["e_star"], force, radii)[2] for force in (load, stuck))
+            try:
+                whole, inner = (pressure(ball, inputs["e_star"], force, radii)[2] for force in (load, stuck))
+            except ArithmeticError:
+                return {}
             return {"shear": (inputs["friction"] * (whole - inner)).tolist()}
         raise NotImplementedError(problem)
 

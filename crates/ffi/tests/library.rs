@@ -49,10 +49,37 @@ fn the_examples_are_built_by_make_and_run() {
         assert!(said.contains(program), "{program} is missing in\n{said}");
     }
     assert!(fortran.is_empty() || said.contains("fortran: ok"), "{said}");
-    // Valgrind finds what is lost or read before it is written.
-    if has("valgrind") {
+    // Valgrind finds what is lost or read before it is written. The threads of OpenMP stay until the end.
+    let programs = ["ball", "lammps", "many", "fortran"];
+    for program in programs.iter().filter(|program| has("valgrind") && build.join(program).exists()) {
         let mut valgrind = Command::new("valgrind");
-        valgrind.args(["--quiet", "--error-exitcode=9", "--leak-check=full"]).arg(build.join("ball"));
-        output(valgrind.env("LD_LIBRARY_PATH", &build));
+        valgrind.args(["--quiet", "--error-exitcode=9", "--leak-check=full", "--errors-for-leak-kinds=definite"]);
+        output(valgrind.arg(build.join(program)).env("LD_LIBRARY_PATH", &build).env("OMP_NUM_THREADS", "2"));
+    }
+}
+
+#[test]
+fn a_release_has_the_libraries_and_programs_link_them() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("release");
+    let _ = std::fs::remove_dir_all(&folder);
+    output(Command::new(root.join(".ci/libraries")).arg(libraries()).arg(&folder));
+    assert!(folder.join("libstickslip_fmu.so").exists());
+    let [include, lib] = ["include", "lib"].map(|name| folder.join(name));
+    // Static, without a shared library to find; and dynamic, by the name that is installed.
+    let archive = lib.join("libstickslip.a");
+    let ways: [(&str, Vec<String>); 2] = [
+        ("static", vec![archive.display().to_string()]),
+        (
+            "dynamic",
+            vec![format!("-L{}", lib.display()), "-lstickslip".into(), format!("-Wl,-rpath,{}", lib.display())],
+        ),
+    ];
+    for (name, link) in ways {
+        let program = folder.join(name);
+        let mut cc = Command::new("cc");
+        cc.arg("-I").arg(&include).arg(root.join("examples/c/ball.c")).args(link);
+        output(cc.args(["-lm", "-lpthread", "-ldl", "-o"]).arg(&program));
+        assert!(output(&mut Command::new(&program)).contains("ball: ok"), "{name}");
     }
 }
