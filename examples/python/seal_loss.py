@@ -1,7 +1,8 @@
-"""A rubber seal that vibrates: its loss factor over the frequency, from small amplitudes, where the rubber alone
-dissipates, to large ones, where friction does.
+"""A rubber seal that vibrates: the peak of its loss factor over the frequency, by rubber and by friction.
 
     python seal_loss.py
+
+At small amplitudes the rubber alone dissipates, at large ones friction does.
 """
 
 import numpy as np
@@ -16,9 +17,7 @@ FREQUENCIES = np.geomspace(0.1, 1e4, 51)
 
 
 def main() -> pandas.DataFrame:
-    """For each amplitude over that of gross slip: the frequency, Hz, and the height of the peak, and the friction in
-    it.
-    """
+    """For each amplitude over that of gross slip: frequency, Hz, and height of the peak, and the friction in it."""
     slip = ss.cycle(SEAL, "1 nm", frequency=1.0).cycles[0].gross_slip_displacement
     rows = []
     for share in (0.01, 0.1, 0.5, 1.0):

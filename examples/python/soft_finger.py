@@ -1,7 +1,8 @@
-"""A soft finger holds a peg against a wall: it presses, takes the weight, waits, and lets the peg slip, because its
-force relaxes at the place to which it was moved.
+"""A soft finger holds a peg until its force has relaxed: it presses, takes the weight, waits, and lets the peg slip.
 
     python soft_finger.py
+
+Its force relaxes at the place to which it was moved.
 """
 
 import pandas

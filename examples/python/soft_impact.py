@@ -2,8 +2,7 @@
 
     python soft_impact.py
 
-The ball is elastic where the impact is much shorter than the relaxation time of the rubber, and where it is much
-longer.
+The ball loses most where the impact takes some relaxation times of the rubber, and the less the shorter it is.
 """
 
 import numpy as np

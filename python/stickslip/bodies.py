@@ -58,7 +58,6 @@ class Body(Part):
             for name, value in zip(("youngs_modulus", "poisson_ratio"), constants_of(self.youngs_modulus), strict=True):
                 object.__setattr__(self, name, value)
 
-
     def document(self) -> Document:
         """The JSON document of its elastic constants; a contact has the memory of its bodies."""
         return {name: value for name, value in super().document().items() if name != "prony"}

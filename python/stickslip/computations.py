@@ -29,6 +29,7 @@ class Computations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -59,6 +60,8 @@ class Computations(ABC):
             The contact.
         displacement : Quantities
             Tangential displacements of the indenter, m, one move each.
+        duration : Quantity
+            How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`.
         moves : Sequence[SimulatedMove | dict]
             Moves, one after the other.
         force : Quantities
@@ -120,6 +123,7 @@ class Computations(ABC):
         }
         parts: dict[str, Document] = {
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -140,6 +144,7 @@ class Computations(ABC):
         *,
         force: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
         harmonics: int | None = None,
         machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
@@ -153,7 +158,8 @@ class Computations(ABC):
         Moves a contact back and forth at constant load until every cycle repeats the one before it, in closed form: a
         displacement or a force that is a cosine, directly or through a machine of finite stiffness. Returns work,
         stiffness, loss factor and slip for each amplitude and, if asked for, the harmonics and the friction work per
-        area, or the same cycles under many loads. Nothing is stored.
+        area, or the same cycles under many loads. Of bodies with memory, the cycles at each frequency. Nothing is
+        stored.
 
         The contact is taken at the preload of its definition, as if it was never moved: the history and the present
         load of a `Contact` that has been moved do not matter.
@@ -169,6 +175,11 @@ class Computations(ABC):
         best_load : int | bool | BestLoadStudy | dict
             Ask for the normal force under which each amplitude does the most friction work; with at most 100
             amplitudes, not with `normal`. A number alone is its `points`. May have `points`.
+        frequency : Quantity | Quantities
+            Frequency, Hz, or a list of frequencies with the cycles of all amplitudes for each: of bodies with `prony`,
+            whose cycles depend on it. The load has then been held for long: the normal force of a preload, or its
+            indentation. Only a displacement is driven, and of the other options only `harmonics` is allowed. At most
+            100 000 cycles.
         frequency_response : FrequencyResponse | dict
             Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
             `normal`. Needs `drive_force`, `mass`; may have `frequencies`.
@@ -212,6 +223,7 @@ class Computations(ABC):
         given: Document = {
             "best_load": best_load,
             "contact": contact,
+            "frequency": frequency,
             "frequency_response": frequency_response,
             "harmonics": harmonics,
             "machine": machine,
@@ -325,6 +337,7 @@ class Computations(ABC):
         friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        duration: Quantity | None = None,
         moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -381,6 +394,8 @@ class Computations(ABC):
             The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper
             1970). May have `life`, `limit`, `youngs_modulus`. `life` has `s_n` (`cycles`, `exponent`, `reference`) or
             `strain_life` (`ductility`, `ductility_exponent`, `strength`, `strength_exponent`).
+        duration : Quantity
+            How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`.
         moves : Sequence[Move | dict]
             Moves, one after the other.
         force : Quantities
@@ -475,6 +490,7 @@ class Computations(ABC):
                 "swt": swt,
             },
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -697,6 +713,7 @@ class Computations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -720,6 +737,7 @@ class Computations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -743,6 +761,7 @@ class Computations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -765,6 +784,7 @@ class Computations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -795,6 +815,8 @@ class Computations(ABC):
             The contact.
         displacement : Quantities
             Tangential displacements of the indenter, m, one move each.
+        duration : Quantity
+            How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`.
         moves : Sequence[SimulatedMove | dict]
             Moves, one after the other.
         force : Quantities
@@ -866,6 +888,7 @@ class Computations(ABC):
         }
         parts: dict[str, Document] = {
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -1137,6 +1160,7 @@ class AsyncComputations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1160,6 +1184,7 @@ class AsyncComputations(ABC):
         }
         parts: dict[str, Document] = {
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -1180,6 +1205,7 @@ class AsyncComputations(ABC):
         *,
         force: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
         harmonics: int | None = None,
         machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
@@ -1192,6 +1218,7 @@ class AsyncComputations(ABC):
         given: Document = {
             "best_load": best_load,
             "contact": contact,
+            "frequency": frequency,
             "frequency_response": frequency_response,
             "harmonics": harmonics,
             "machine": machine,
@@ -1245,6 +1272,7 @@ class AsyncComputations(ABC):
         friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        duration: Quantity | None = None,
         moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1290,6 +1318,7 @@ class AsyncComputations(ABC):
                 "swt": swt,
             },
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -1375,6 +1404,7 @@ class AsyncComputations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1398,6 +1428,7 @@ class AsyncComputations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1421,6 +1452,7 @@ class AsyncComputations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1443,6 +1475,7 @@ class AsyncComputations(ABC):
         contact: ContactLike,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.SimulatedMove | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1472,6 +1505,7 @@ class AsyncComputations(ABC):
         }
         parts: dict[str, Document] = {
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -1628,7 +1662,7 @@ class OfContact(ABC):
         indentation : Quantity
             Indentation, m; below zero the bodies are apart and the slip history is lost.
         normal_force : Quantity
-            Normal force, N. Normal force, N; below zero, if it is no increment, only with `adhesion`.
+            Normal force, N; below zero, if it is no increment, only with `adhesion`.
         relative : bool
             Whether the numbers are increments to the present state, instead of the targets themselves.
         stress : int | StressRequest | dict
@@ -1671,6 +1705,7 @@ class OfContact(ABC):
         self,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -1687,6 +1722,8 @@ class OfContact(ABC):
         ----------
         displacement : Quantities
             Tangential displacements of the indenter, m, one move each.
+        duration : Quantity
+            How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`.
         moves : Sequence[Move | dict]
             Moves, one after the other.
         force : Quantities
@@ -1735,6 +1772,7 @@ class OfContact(ABC):
         }
         parts: dict[str, Document] = {
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -1881,6 +1919,7 @@ class OfContact(ABC):
         *,
         force: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
         harmonics: int | None = None,
         machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
@@ -1894,7 +1933,8 @@ class OfContact(ABC):
         Moves a contact back and forth at constant load until every cycle repeats the one before it, in closed form: a
         displacement or a force that is a cosine, directly or through a machine of finite stiffness. Returns work,
         stiffness, loss factor and slip for each amplitude and, if asked for, the harmonics and the friction work per
-        area, or the same cycles under many loads. Nothing is stored.
+        area, or the same cycles under many loads. Of bodies with memory, the cycles at each frequency. Nothing is
+        stored.
 
         The load is the present one, and the history does not matter. `stickslip.cycle(contact)` is at the preload of
         the definition instead.
@@ -1908,6 +1948,11 @@ class OfContact(ABC):
         best_load : int | bool | BestLoadStudy | dict
             Ask for the normal force under which each amplitude does the most friction work; with at most 100
             amplitudes, not with `normal`. A number alone is its `points`. May have `points`.
+        frequency : Quantity | Quantities
+            Frequency, Hz, or a list of frequencies with the cycles of all amplitudes for each: of bodies with `prony`,
+            whose cycles depend on it. The load has then been held for long: the normal force of a preload, or its
+            indentation. Only a displacement is driven, and of the other options only `harmonics` is allowed. At most
+            100 000 cycles.
         frequency_response : FrequencyResponse | dict
             Ask for the oscillations of a mass that only the contact holds and a force drives. Not with `machine` or
             `normal`. Needs `drive_force`, `mass`; may have `frequencies`.
@@ -1947,6 +1992,7 @@ class OfContact(ABC):
         """
         given: Document = {
             "best_load": best_load,
+            "frequency": frequency,
             "frequency_response": frequency_response,
             "harmonics": harmonics,
             "machine": machine,
@@ -1974,6 +2020,7 @@ class OfContact(ABC):
         friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        duration: Quantity | None = None,
         moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -2028,6 +2075,8 @@ class OfContact(ABC):
             The largest of normal stress times amplitude of the normal strain on a plane, Pa (Smith, Watson & Topper
             1970). May have `life`, `limit`, `youngs_modulus`. `life` has `s_n` (`cycles`, `exponent`, `reference`) or
             `strain_life` (`ductility`, `ductility_exponent`, `strength`, `strength_exponent`).
+        duration : Quantity
+            How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`.
         moves : Sequence[Move | dict]
             Moves, one after the other.
         force : Quantities
@@ -2112,6 +2161,7 @@ class OfContact(ABC):
                 "swt": swt,
             },
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -2219,6 +2269,7 @@ class AsyncOfContact(ABC):
         self,
         displacement: Quantities | None = None,
         *,
+        duration: Quantity | None = None,
         moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -2238,6 +2289,7 @@ class AsyncOfContact(ABC):
         }
         parts: dict[str, Document] = {
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,
@@ -2304,6 +2356,7 @@ class AsyncOfContact(ABC):
         *,
         force: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
+        frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
         harmonics: int | None = None,
         machine: Quantity | types.Machine | Mapping[str, Any] | None = None,
@@ -2315,6 +2368,7 @@ class AsyncOfContact(ABC):
         """`cycle`, awaited."""
         given: Document = {
             "best_load": best_load,
+            "frequency": frequency,
             "frequency_response": frequency_response,
             "harmonics": harmonics,
             "machine": machine,
@@ -2342,6 +2396,7 @@ class AsyncOfContact(ABC):
         friction_work: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         ruiz: bool | types.SurfaceCriterion | Mapping[str, Any] | None = None,
         swt: bool | types.StrainBased | Mapping[str, Any] | None = None,
+        duration: Quantity | None = None,
         moves: Sequence[types.Move | Mapping[str, Any]] | None = None,
         force: Quantities | None = None,
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
@@ -2386,6 +2441,7 @@ class AsyncOfContact(ABC):
                 "swt": swt,
             },
             "path": {
+                "duration": duration,
                 "moves": moves,
                 "displacement": displacement,
                 "force": force,

@@ -25,6 +25,7 @@ MEMBERS: dict[str, str] = {
     "force": "N",
     "force_error": "1",
     "frequencies": "Hz",
+    "frequency": "Hz",
     "friction": "1",
     "friction_error": "1",
     "g_star": "Pa",

@@ -492,54 +492,76 @@ class Observation(_ObservationNeeded, total=False):
     """When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it."""
 
 
-class PathMoves(TypedDict):
-    """Moves, one after the other."""
-
+class _PathDurationNeeded(TypedDict):
     moves: Sequence[Move | Mapping[str, Any]]
+
+
+class PathDuration(_PathDurationNeeded, total=False):
     """Moves, one after the other."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class PathDisplacement(TypedDict):
-    """Tangential displacements of the indenter, m, one move each."""
 
+class _PathDisplacementNeeded(TypedDict):
     displacement: Quantities
+
+
+class PathDisplacement(_PathDisplacementNeeded, total=False):
     """Tangential displacements of the indenter, m, one move each."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class PathForce(TypedDict):
-    """Tangential forces, N, one move each."""
 
+class _PathDurationNeeded(TypedDict):
     force: Quantities
+
+
+class PathDuration(_PathDurationNeeded, total=False):
     """Tangential forces, N, one move each."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class PathFallingAmplitude(TypedDict):
+
+class _PathDurationNeeded(TypedDict):
+    falling_amplitude: FallingAmplitude | Mapping[str, Any]
+
+
+class PathDuration(_PathDurationNeeded, total=False):
     """Back and forth with an amplitude that falls linearly to zero (eq.
 
     20 of the paper).
     """
 
-    falling_amplitude: FallingAmplitude | Mapping[str, Any]
-    """Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper)."""
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class PathEqualPeaks(TypedDict):
+class _PathDurationNeeded(TypedDict):
+    equal_peaks: EqualPeaks | Mapping[str, Any]
+
+
+class PathDuration(_PathDurationNeeded, total=False):
     """Back and forth from gross slip to rest.
 
     With the amplitudes that leave equal peaks of shear stress on the profile of the contact.
     """
 
-    equal_peaks: EqualPeaks | Mapping[str, Any]
-    """Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-    profile of the contact.
-    """
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class PathCycles(TypedDict):
-    """Equal cycles about a mean, under a constant load or one that oscillates too."""
-
+class _PathCyclesNeeded(TypedDict):
     cycles: CyclicPath | Mapping[str, Any]
+
+
+class PathCycles(_PathCyclesNeeded, total=False):
     """Equal cycles about a mean, under a constant load or one that oscillates too."""
+
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
 class PointScan(TypedDict):
@@ -696,75 +718,109 @@ class SimulatedMove(TypedDict, total=False):
     """
 
 
-class SimulatedPathMoves(TypedDict):
-    """Moves, one after the other."""
-
+class _SimulatedPathDurationNeeded(TypedDict):
     moves: Sequence[SimulatedMove | Mapping[str, Any]]
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Moves, one after the other."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class SimulatedPathDisplacement(TypedDict):
-    """Tangential displacements of the indenter, m, one move each."""
 
+class _SimulatedPathDisplacementNeeded(TypedDict):
     displacement: Quantities
+
+
+class SimulatedPathDisplacement(_SimulatedPathDisplacementNeeded, total=False):
     """Tangential displacements of the indenter, m, one move each."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class SimulatedPathForce(TypedDict):
-    """Tangential forces, N, one move each."""
 
+class _SimulatedPathDurationNeeded(TypedDict):
     force: Quantities
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Tangential forces, N, one move each."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class SimulatedPathFallingAmplitude(TypedDict):
+
+class _SimulatedPathDurationNeeded(TypedDict):
+    falling_amplitude: FallingAmplitude | Mapping[str, Any]
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Back and forth with an amplitude that falls linearly to zero (eq.
 
     20 of the paper).
     """
 
-    falling_amplitude: FallingAmplitude | Mapping[str, Any]
-    """Back and forth with an amplitude that falls linearly to zero (eq. 20 of the paper)."""
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class SimulatedPathEqualPeaks(TypedDict):
+class _SimulatedPathDurationNeeded(TypedDict):
+    equal_peaks: EqualPeaks | Mapping[str, Any]
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Back and forth from gross slip to rest.
 
     With the amplitudes that leave equal peaks of shear stress on the profile of the contact.
     """
 
-    equal_peaks: EqualPeaks | Mapping[str, Any]
-    """Back and forth from gross slip to rest, with the amplitudes that leave equal peaks of shear stress on the
-    profile of the contact.
-    """
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class SimulatedPathCycles(TypedDict):
-    """Equal cycles about a mean, under a constant load or one that oscillates too."""
-
+class _SimulatedPathCyclesNeeded(TypedDict):
     cycles: CyclicPath | Mapping[str, Any]
+
+
+class SimulatedPathCycles(_SimulatedPathCyclesNeeded, total=False):
     """Equal cycles about a mean, under a constant load or one that oscillates too."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class SimulatedPathEllipse(TypedDict):
-    """Turns around an ellipse."""
 
+class _SimulatedPathDurationNeeded(TypedDict):
     ellipse: Ellipse | Mapping[str, Any]
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Turns around an ellipse."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class SimulatedPathTwist(TypedDict):
-    """Angles of twist, rad, one move each."""
 
+class _SimulatedPathDurationNeeded(TypedDict):
     twist: Quantities
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Angles of twist, rad, one move each."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class SimulatedPathTorque(TypedDict):
-    """Torques, N·m, one move each."""
 
+class _SimulatedPathDurationNeeded(TypedDict):
     torque: Quantities
+
+
+class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """Torques, N·m, one move each."""
+
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
 class SmoothingNoise(TypedDict):
@@ -1053,11 +1109,8 @@ Output: TypeAlias = Union[
 ]
 """A number of the reply to `POST /simulate`: a JSON pointer, or an object that names its column too."""
 Path: TypeAlias = Union[
-    "PathMoves",
+    "PathDuration",
     "PathDisplacement",
-    "PathForce",
-    "PathFallingAmplitude",
-    "PathEqualPeaks",
     "PathCycles",
     "Mapping[str, Any]",
 ]
@@ -1083,15 +1136,9 @@ ScanData: TypeAlias = Union[
 ]
 """Heights with their places, one key. A height of `null` is missing."""
 SimulatedPath: TypeAlias = Union[
-    "SimulatedPathMoves",
+    "SimulatedPathDuration",
     "SimulatedPathDisplacement",
-    "SimulatedPathForce",
-    "SimulatedPathFallingAmplitude",
-    "SimulatedPathEqualPeaks",
     "SimulatedPathCycles",
-    "SimulatedPathEllipse",
-    "SimulatedPathTwist",
-    "SimulatedPathTorque",
     "Mapping[str, Any]",
 ]
 """A path, one key: a list of moves, or a short form of one."""

@@ -167,7 +167,7 @@ class CycleReply(Result):
     """The contact at its load; in a map, at its preload."""
 
     cycles: Rows[Record]
-    """The cycles, in the order of the amplitudes; in a map load by load."""
+    """The cycles, in the order of the amplitudes; in a map load by load, with frequencies one by one."""
 
     warnings: Rows[Record]
     """Warnings about the result."""
@@ -183,11 +183,17 @@ class CycleReply(Result):
 
         @property
         def dissipated_energy(self) -> Floats:
-            """Of each row: Friction work of a cycle, J: the area of the force-displacement loop."""
+            """Of each row: Friction work of a cycle, J: the area of the force-displacement loop, without
+            `viscous_work`.
+            """
 
         @property
         def force_amplitude(self) -> Floats:
             """Of each row: Amplitude of the tangential force, N."""
+
+        @property
+        def frequency(self) -> Floats:
+            """Of each row: Frequency, Hz; only of bodies with `prony`."""
 
         @property
         def friction_energy(self) -> Floats:
@@ -198,13 +204,13 @@ class CycleReply(Result):
         @property
         def gross_slip_displacement(self) -> Floats:
             """Of each row: Displacement amplitude of the indenter at which gross slip begins under this load, m; only
-            in a map.
+            in a map, and of bodies with `prony`, whose slow cycles have it.
             """
 
         @property
         def loss_factor(self) -> Floats:
-            """Of each row: Dissipated energy over 2π times the largest elastic energy, a pure number; `null` where the
-            indenter slides and nothing is stored, as without friction and without load.
+            """Of each row: Dissipated energy, and viscous work, over 2π times the largest elastic energy, a pure
+            number; `null` where the indenter slides and nothing is stored, as without friction and without load.
             """
 
         @property
@@ -217,7 +223,9 @@ class CycleReply(Result):
 
         @property
         def normal_force(self) -> Floats:
-            """Of each row: Normal force, N; only in a map."""
+            """Of each row: Normal force, N; only in a map, and of bodies with `prony`, that to which they have
+            relaxed.
+            """
 
         @property
         def regime(self) -> Texts:
@@ -244,6 +252,12 @@ class CycleReply(Result):
         @property
         def tangent_stiffness(self) -> Floats:
             """Of each row: Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction."""
+
+        @property
+        def viscous_work(self) -> Floats:
+            """Of each row: Work of the tangential force that the bodies dissipate in a cycle by their memory, J, if
+            they have `prony`.
+            """
 
 
 class Figures(Result):

@@ -662,6 +662,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "displacement_amplitude": ("", "m"),
         "dissipated_energy": ("", "J"),
         "force_amplitude": ("", "N"),
+        "frequency": ("", "Hz"),
         "friction_energy": ("", "J"),
         "friction_work": ("FrictionWork", None),
         "gross_slip_displacement": ("", "m"),
@@ -675,6 +676,7 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "sliding_ratio": ("", "1"),
         "stick_radius": ("", "m"),
         "tangent_stiffness": ("", "N/m"),
+        "viscous_work": ("", "J"),
     },
     "Stress": {
         "displacement": ("[]", "m"),

@@ -102,14 +102,14 @@ def test_an_app_of_streamlit_shows_the_stick_radius_of_its_sliders() -> None:
     assert float(app.metric[0].value.split()[0]) > float(before.split()[0])
 
 
-def test_a_soft_ball_loses_most_where_the_impact_takes_as_long_as_the_rubber_relaxes() -> None:
+def test_a_soft_ball_loses_most_where_the_impact_takes_some_relaxation_times() -> None:
     table = run("soft_impact")
     least = table["restitution"].argmin()
     assert 0.3 < table["time"].iloc[least] < 10.0
     assert 0.5 < table["restitution"].iloc[least] < 0.9
-    # The time of contact goes with the speed to the power of -1/5, and the ends are nearer to elastic.
+    # The time of contact goes with the speed to the power of -1/5: fast impacts are nearer to elastic.
     assert table["time"].is_monotonic_decreasing
-    assert table["restitution"].iloc[[0, -1]].min() > table["restitution"].iloc[least] + 0.03
+    assert table["restitution"].iloc[-1] > table["restitution"].iloc[least] + 0.1
 
 
 def test_a_seal_loses_most_near_the_relaxation_time_and_by_friction_where_it_slips() -> None:

@@ -11,7 +11,7 @@ use stickslip::store::SqliteStore;
 use stickslip_wire::client::Event;
 use uuid::Uuid;
 
-use crate::common::{PATIENCE, Server, good, number, problem};
+use crate::common::{PATIENCE, Server, changed, good, number, of, problem, run};
 
 fn rubber() -> Value {
     json!({
@@ -71,7 +71,6 @@ async fn what_a_contact_with_memory_lacks_is_refused_by_name_and_moves_nothing()
         ("path", json!({"path": {"equal_peaks": {"reversals": 4}, "duration": 0.1}})),
         ("observations", json!({"observations": [{"displacement": 1e-5, "force": 0.0}]})),
         ("move", json!({"displacement": 0.0, "stress": {"points": 3}})),
-        ("move", json!({"twist": 0.1})),
     ] {
         let refused = problem(server.post(&format!("{place}/{route}"), &body).await).await;
         let text = format!("{route}: {refused:?}");
@@ -94,4 +93,22 @@ async fn what_a_contact_with_memory_lacks_is_refused_by_name_and_moves_nothing()
     let refused = problem(server.post(&moves, &elastic).await).await;
     assert_eq!((refused.code.as_str(), &*refused.errors[0].pointer), ("invalid_input", "/path/duration"));
     assert_eq!(good(server.get(&place).await).await, before);
+}
+
+#[tokio::test]
+async fn frequencies_are_asked_for_by_a_flag_too() {
+    let server = Server::start().await;
+    let drive = json!({"drive": {"displacement": [1e-5, 1e-4]}});
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("cycle.json");
+    std::fs::write(&file, of(&rubber(), &drive).to_string()).unwrap();
+    let by_flag = |hertz: &str| run(&["cycle", file.to_str().unwrap(), "--frequency", hertz]);
+    let body = changed(of(&rubber(), &drive), &json!({"frequency": [0.5, 5.0]}));
+    let csv = server.post("/cycle?format=csv", &body).await.text().await.unwrap();
+    assert!(csv.starts_with("frequency,normal_force,"), "{csv}");
+    assert_eq!(String::from_utf8(by_flag("0.5,5").stdout).unwrap(), csv);
+    for wrong in ["0", "-1", "a", "0.5,0"] {
+        assert!(!by_flag(wrong).status.success(), "{wrong}");
+    }
+    assert!(!run(&["cycle", file.to_str().unwrap(), "--frequency", "1", "--map", "1:2:3"]).status.success());
 }

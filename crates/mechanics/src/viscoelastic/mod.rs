@@ -182,7 +182,7 @@ impl Viscoelastic {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
         let before = self.clone();
-        let followed = self.steps_along(material, leg, tolerance, keep_going);
+        let followed = self.steps_along(&before, material, leg, tolerance, keep_going);
         if followed.is_err() {
             *self = before;
         }
@@ -191,6 +191,7 @@ impl Viscoelastic {
 
     fn steps_along(
         &mut self,
+        before: &Viscoelastic,
         material: &Material<'_>,
         leg: &Leg,
         tolerance: f64,
@@ -217,15 +218,12 @@ impl Viscoelastic {
             }
             let end = if part + 1.01 * stride >= 1.0 { 1.0 } else { part + stride };
             let allowed = tolerance * 2.0_f64.powi(i32::try_from(count / PATIENCE).unwrap_or(i32::MAX).min(40));
-            let rows = (!straight).then(|| (self.fine.clone(), self.coarse.clone()));
+            let rows = (!straight && part > 0.0).then(|| (self.fine.clone(), self.coarse.clone()));
             let (bend, exact, slip_from, beyond) = self.step(material, leg, [part, end])?;
             // Over what it may be; a path that is straight in d and U is exact.
             let excess = (bend / allowed).max(exact / BEND);
-            if let Some(rows) = rows
-                && excess > 1.0
-                && end - part > LEAST_PART
-            {
-                (self.fine, self.coarse) = rows;
+            if !straight && excess > 1.0 && end - part > LEAST_PART {
+                (self.fine, self.coarse) = rows.unwrap_or_else(|| (before.fine.clone(), before.coarse.clone()));
                 stride = (end - part) * (0.8 / excess.sqrt()).clamp(0.1, 0.6);
                 continue;
             }

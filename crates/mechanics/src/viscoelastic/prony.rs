@@ -162,6 +162,12 @@ impl Prony {
         to - kept
     }
 
+    /// As [`Prony::press`], into another place.
+    pub(super) fn press_into(&self, kernel: &Kernel, v: &[f64], ways: [f64; 2], after: &mut [f64]) -> f64 {
+        after.copy_from_slice(v);
+        self.press(kernel, after, ways)
+    }
+
     /// p after that, without the move.
     pub(super) fn pressed(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
         let mut kept = 0.0;

@@ -112,9 +112,11 @@ impl Step<'_> {
     fn press(&self, level: f64, v: &mut [f64], before: f64) -> (Pressing, f64) {
         let ends = [self.at(level, 0.0), self.at(level, 1.0)];
         if before > 0.0 {
-            let p = self.prony.pressed(&self.kernel, v, ends);
+            let mut after = [0.0; MOST_TERMS];
+            let after = &mut after[..v.len()];
+            let p = self.prony.press_into(&self.kernel, v, ends, after);
             if p >= 0.0 {
-                self.prony.press(&self.kernel, v, ends);
+                v.copy_from_slice(after);
                 return (Pressing::Through, p);
             }
             let part = between([(0.0, before), (1.0, p)], INSTANT, |part| {
@@ -187,11 +189,13 @@ impl Step<'_> {
         let (prony, scale) = (self.prony, self.scale);
         let kernel = &*self.kernel_over(end - begin);
         let ends = [spring.u, spring.u + way];
-        let trial = prony.pressed(kernel, spring.v, ends);
+        let mut after = [0.0; MOST_TERMS];
+        let after = &mut after[..spring.v.len()];
+        let trial = prony.press_into(kernel, spring.v, ends, after);
         let bound = scale * p;
         if trial.abs() <= bound {
             let work = if way.abs() > 0.0 { way * prony.mean_of_p(kernel, spring.v, ends) } else { 0.0 };
-            prony.press(kernel, spring.v, ends);
+            spring.v.copy_from_slice(after);
             spring.u = ends[1];
             return [0.0, 0.0, work, trial];
         }
@@ -202,7 +206,8 @@ impl Step<'_> {
             let u = spring.u + way * (part - begin) / (end - begin);
             sign * prony.pressed(&kernel, v, [spring.u, u]) - scale * prony.pressed(&kernel, z, [at(begin), at(part)])
         };
-        let before = sign * (spring.u - prony.kept(spring.v)) - scale * (at(begin) - prony.kept(spring.z));
+        let [mut first, q] = spring.load;
+        let before = sign * q - scale * first;
         let mut from = begin;
         let mut stuck = 0.0;
         let mut u = spring.u;
@@ -213,9 +218,8 @@ impl Step<'_> {
             let (kernel, ends) = (self.kernel(from - begin), [spring.u, u]);
             stuck = (u - spring.u) * prony.mean_of_p(&kernel, spring.v, ends);
             prony.press(&kernel, spring.v, ends);
-            prony.press(&kernel, spring.z, [at(begin), at(from)]);
+            first = prony.press(&kernel, spring.z, [at(begin), at(from)]).max(0.0);
         }
-        let first = (at(from) - prony.kept(spring.z)).max(0.0);
         let kernel = &*self.kernel_over(end - from);
         let factor = sign * scale;
         spring.v.iter_mut().zip(&*spring.z).for_each(|(v, z)| *v -= factor * z);
@@ -238,6 +242,8 @@ struct Tangential<'a> {
     v: &'a mut [f64],
     z: &'a mut [f64],
     u: f64,
+    /// p and q at the beginning.
+    load: [f64; 2],
 }
 
 impl Row {
@@ -381,7 +387,8 @@ impl Row {
             }
             let mut slip = 0.0;
             if parts[1] > parts[0] || !matches!(pressing, Pressing::Free) {
-                let mut spring = Tangential { level: *level, v: &mut *v, z, u: *u };
+                let before = if parts[0] > 0.0 { [0.0; 2] } else { *load };
+                let mut spring = Tangential { level: *level, v: &mut *v, z, u: *u, load: before };
                 let share = way * (parts[1] - parts[0]);
                 let [slid, lost, done, q] = step.slide(&mut spring, parts, share, p);
                 *u = spring.u;
