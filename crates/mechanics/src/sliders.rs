@@ -26,8 +26,8 @@ pub const ERROR: Range = Range { quantity: Quantity::SliderError, unit: "", min:
 const STRAIGHT: f64 = 1e-15;
 /// Relative width to which the common error of the chords is found.
 const WIDTH: f64 = 1e-13;
-/// The most geometric knots below the smallest amplitude.
-const KNOTS_BELOW: usize = 6;
+/// Work below this, over that of sliding as far, is rounding.
+const ROUNDING: f64 = 1e-14;
 /// Amplitudes between two knots at which the work is compared.
 const AMPLITUDES_BETWEEN: usize = 4;
 
@@ -237,59 +237,70 @@ impl FirstLoading<'_> {
     fn geometric(&self, error: f64, smallest: f64, keep_going: &dyn Fn() -> bool) -> Result<Sliders, Error> {
         let (most, end) = (COUNT.max as usize, self.depth.value());
         let first = smallest / self.contact.scale();
-        let best = |count: usize| {
-            let of = |below: usize| {
-                let ratio = (end / first).powf(1.0 / (count - 1 - below) as f64);
-                let knots: Vec<f64> =
-                    (1..count).rev().map(|back| end * ratio.powi(-(back as i32))).chain([end]).collect();
-                let sliders = self.sliders(&knots);
-                (self.work_deviation(&sliders, smallest), sliders)
-            };
-            (1..=KNOTS_BELOW.min(count.saturating_sub(2))).map(of).min_by(|one, other| one.0.total_cmp(&other.0))
-        };
-        let (mut low, mut high) = (2, 3);
-        loop {
+        let of = |count: usize, below: usize| {
             if !keep_going() {
                 return Err(Error::Interrupted);
             }
-            match best(high) {
-                Some((deviation, sliders)) if deviation <= error => {
-                    if high - low <= 1 {
-                        return Ok(sliders);
-                    }
-                    break;
-                }
-                Some((deviation, _)) if high >= most => {
-                    let allowed = format!("{deviation:.3e} and more, which takes {most} sliders");
-                    return Err(Error::OutOfRange { quantity: Quantity::SliderError, value: error, allowed });
-                }
-                _ => (low, high) = (high, (2 * high).min(most)),
+            let ratio = (end / first).powf(1.0 / count.saturating_sub(1 + below).max(1) as f64);
+            let knots: Vec<f64> = (1..count).rev().map(|back| end * ratio.powi(-(back as i32))).chain([end]).collect();
+            let sliders = self.sliders(&knots);
+            Ok((self.work_deviation(&sliders, smallest), sliders))
+        };
+        let best = |count: usize| {
+            // Too few knots below the smallest amplitude lose its work, and too many leave the others far apart.
+            let (mut low, mut high) = (0, count.saturating_sub(2));
+            while high - low > 2 {
+                let third = (high - low) / 3;
+                if of(count, low + third)?.0 <= of(count, high - third)?.0 { high -= third } else { low += third }
             }
+            let mut found = of(count, low)?;
+            for below in low + 1..=high {
+                let other = of(count, below)?;
+                found = if other.0 < found.0 { other } else { found };
+            }
+            Ok(found)
+        };
+        let (mut low, mut high) = (0, 1);
+        let mut found = best(high)?;
+        while found.0 > error {
+            if high >= most {
+                let allowed = format!("{:.3e} and more, which takes {most} sliders", found.0);
+                return Err(Error::OutOfRange { quantity: Quantity::SliderError, value: error, allowed });
+            }
+            (low, high) = (high, (2 * high).min(most));
+            found = best(high)?;
         }
         while high - low > 1 {
-            if !keep_going() {
-                return Err(Error::Interrupted);
-            }
             let middle = low.midpoint(high);
-            let fits = best(middle).is_some_and(|(deviation, _)| deviation <= error);
-            if fits { high = middle } else { low = middle }
+            let other = best(middle)?;
+            if other.0 <= error { (high, found) = (middle, other) } else { low = middle }
         }
-        Ok(best(high).map_or_else(|| self.sliders(&[end]), |(_, sliders)| sliders))
+        Ok(found.1)
     }
 
     /// The largest distance from 1 of the work over the exact one, from an amplitude, m, on.
     fn work_deviation(&self, sliders: &Sliders, smallest: f64) -> f64 {
-        let deviation = |amplitude: f64| (sliders.work_ratio(self.contact, amplitude) - 1.0).abs();
-        let ends: Vec<f64> = std::iter::once(smallest)
-            .chain(sliders.displacement.iter().copied().filter(|knot| *knot > smallest))
-            .collect();
-        let between = |pair: &[f64]| {
-            let [from, to] = [pair[0], pair[1]];
-            let places =
-                (0..=AMPLITUDES_BETWEEN).map(|step| from + (to - from) * step as f64 / AMPLITUDES_BETWEEN as f64);
-            places.map(deviation).fold(0.0, f64::max)
-        };
-        ends.windows(2).map(between).fold(0.0, f64::max)
+        let Sliders { displacement, slip_force, .. } = sliders;
+        let (mut largest, mut from): (f64, f64) = (0.0, smallest);
+        let whole: f64 = slip_force.iter().sum();
+        // The forces of the sliders that slip, and their moments about zero.
+        let (mut force, mut moment) = (0.0, 0.0);
+        for (&knot, &cap) in displacement.iter().zip(slip_force) {
+            if knot > smallest {
+                for step in 0..=AMPLITUDES_BETWEEN {
+                    let amplitude = from + (knot - from) * step as f64 / AMPLITUDES_BETWEEN as f64;
+                    let work = 4.0 * (force * amplitude - moment);
+                    let exact = SteadyCycle::of(self.contact, amplitude).dissipated_energy();
+                    let lost = (work - exact).abs();
+                    // Where nothing slips, as on a flat, both are rounding.
+                    largest = largest.max(if lost > ROUNDING * whole * amplitude { lost / exact } else { 0.0 });
+                }
+                from = knot;
+            }
+            force += cap;
+            moment += cap * knot;
+        }
+        largest
     }
 }
 

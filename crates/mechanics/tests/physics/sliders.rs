@@ -163,11 +163,35 @@ fn geometric_knots_keep_the_work_of_small_cycles_and_equal_chords_lose_it() {
 }
 
 #[test]
+fn every_shape_has_geometric_knots_for_small_errors_of_the_work() {
+    for contact in contacts() {
+        let name = format!("{:.60?}", contact.profile());
+        let gross_slip = contact.summary().gross_slip_displacement;
+        for (error, part, most) in [(0.1, 0.3, 14), (0.1, 0.01, 40), (0.01, 0.1, 200)] {
+            let wanted = Wanted::WorkError { error, smallest_amplitude: part * gross_slip };
+            let sliders = Sliders::of(&contact, wanted, &|| true).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let (count, whole) = (sliders.displacement.len(), sliders.slip_force.iter().sum::<f64>());
+            assert!(count <= most, "{name}, {error}, {part}: {count} sliders");
+            for index in 0..=300 {
+                let amplitude = gross_slip * part.powf(f64::from(index) / 300.0);
+                let exact = SteadyCycle::of(&contact, amplitude).dissipated_energy();
+                let lost = (sliders.work(amplitude) - exact).abs();
+                // Between the amplitudes that are compared the deviation is a little larger.
+                assert!(lost <= 1.02 * error * exact + 1e-13 * whole * gross_slip, "{name}, {error}, {part}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_punch_is_one_slider_and_what_cannot_slide_is_refused() {
     let punch = Setup { profile: Profile::FlatPunch(FlatPunch::new(1e-4).unwrap()), ..PLAIN.setup() };
     let contact = Contact::new(Setup { preload: Preload::NormalForce(10.0), ..punch }).unwrap();
     let sliders = of(&contact, Wanted::Count(7));
     assert_eq!((sliders.displacement.len(), sliders.force_error), (1, 0.0));
+    let gross_slip = contact.summary().gross_slip_displacement;
+    let kept = of(&contact, Wanted::WorkError { error: 0.1, smallest_amplitude: 0.1 * gross_slip });
+    assert_eq!(kept.displacement.len(), 1);
     let refused =
         |contact: &Contact, wanted| matches!(Sliders::of(contact, wanted, &|| true), Err(Error::OutOfRange { .. }));
     let smooth = Contact::new(Setup { friction: 0.0, ..PLAIN.setup() }).unwrap();
