@@ -8,6 +8,7 @@ import { WITHOUT_STRESS } from "./form_options.js";
 import { isLine, meanPressure, placesOf } from "./line_contact.js";
 import { bulkFields, materialFields, preloadFields } from "./material_fields.js";
 import { profileFields } from "./profile_fields.js";
+import { conductanceFigures } from "./state_text.js";
 import { formatNumber, formatQuantity } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
 
@@ -143,6 +144,7 @@ export function figureList(figures, definition) {
     figure("Gross slip at μ F_N", formatQuantity(figures.gross_slip_force, "N")),
     figure("Reduced modulus E*", formatQuantity(figures.e_star, "Pa")),
     figure("Stiffness ratio E*/G*", formatNumber(figures.e_star / figures.g_star)),
+    ...conductanceFigures(figures),
   ];
 }
 

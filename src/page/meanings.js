@@ -13,6 +13,8 @@ export const MEANINGS = {
   "Gross slip at μ F_N": "The largest tangential force: the coefficient of friction times the load.",
   "Largest shear stress": "Of the present state; μ p_max is friction times the largest pressure.",
   "Slip history": "The turning points that the contact remembers. A move beyond one closes its loop and erases it.",
+  "Electrical conductance": "Of the constriction alone, and the resistance that it is. Films of oxide resist besides.",
+  "Thermal conductance": "Of the constriction alone: heat flow over the difference of temperature of the bodies.",
   "Friction work W": "The work that friction has dissipated so far. It only grows.",
   "Measured friction μ": "From the last measured cycle of the bench that the contact follows, with its interval.",
   "Middle of the stick zone e": "A bulk stress shifts the stick zone off the middle.",
@@ -25,5 +27,7 @@ export const MEANINGS = {
   "Wear ends at a contact radius of": "At a held indentation: the disc inside it never slips and keeps its shape.",
   "Remains, of μ p_max": "The largest shear stress that remains, over friction times the largest pressure.",
   "Error of forces, of μ F_N": "The estimated error of any force so far, over the friction limit.",
+  "Stiffer by coupling, at most":
+    "Unlike bodies shear each other as they are pressed together, which is neglected: the normal stiffness may be so much larger.",
   "Error of stresses, of μ p_max": "The estimated error of a shear stress, over friction times the largest pressure.",
 };

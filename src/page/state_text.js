@@ -61,6 +61,17 @@ function shearText({ max, relative }) {
   ];
 }
 
+/** How well a contact conducts, where its bodies have the numbers; the resistance is that of the constriction. */
+export function conductanceFigures({ electrical_conductance: electrical, thermal_conductance: thermal }) {
+  const resistance = () => (electrical > 0 ? `, ${formatQuantity(1 / electrical, "Ω")}` : "");
+  return [
+    ...(electrical === undefined
+      ? []
+      : [figure("Electrical conductance", `${formatQuantity(electrical, "S")}${resistance()}`)]),
+    ...(thermal === undefined ? [] : [figure("Thermal conductance", formatQuantity(thermal, "W/K"))]),
+  ];
+}
+
 /** Lines about a state. */
 export function stateText(state, { friction, history, first, measured, stress, isLine }) {
   const limit = friction * state.normal_force;
@@ -85,6 +96,7 @@ export function stateText(state, { friction, history, first, measured, stress, i
         ? [figure("Middle of the stick zone e", formatQuantity(state.stick_centre, "m"))]
         : []),
       ...(stress && state.normal_force > 0 ? [figure("Largest shear stress", shearText(stress.residual))] : []),
+      ...conductanceFigures(state),
       figure("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
       figure("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
       ...(measured ? [figure("Measured friction μ", measuredText(measured))] : []),

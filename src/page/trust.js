@@ -27,6 +27,9 @@ export function trustCard(model) {
     figures.replaceChildren(
       figure("Error of forces, of μ F_N", formatNumber(accuracy.force_error, 2)),
       ...(model.stress ? [figure("Error of stresses, of μ p_max", formatNumber(accuracy.stress_error, 2))] : []),
+      ...(typeof accuracy.coupling_bound === "number"
+        ? [figure("Stiffer by coupling, at most", `${formatNumber(100 * accuracy.coupling_bound, 2)} %`)]
+        : []),
       ...(model.isComplete ? [] : [figure("Of", "the contact alone: its history is long")]),
     );
     const number = found.length === 1 ? "1 warning" : `${found.length} warnings`;

@@ -195,6 +195,24 @@ async fn each_tab_has_an_address_that_survives_reload_back_and_links() {
 }
 
 #[tokio::test]
+async fn bodies_that_conduct_have_their_conductance_and_unlike_ones_the_size_of_their_coupling() {
+    let scene = Scene::start().await;
+    let mut request = create();
+    let copper = json!({"youngs_modulus": 1.2e11, "poisson_ratio": 0.34, "resistivity": 1.7e-8, "conductivity": 390.0});
+    let steel = json!({"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "resistivity": 1e-7, "conductivity": 50.0});
+    request.material = serde_json::from_value(json!({"bodies": [copper, steel]})).unwrap();
+    let session = scene.server.client.create(&request, &Options::default()).await.unwrap();
+    scene.open(&session, "").await;
+    let browser = &scene.browser;
+    // Holm (1967): the resistance of the constriction, and its heat.
+    let radius = session.contact.contact_radius;
+    let (electrical, thermal) = (4.0 * radius / 1.17e-7, 4.0 * radius / (1.0 / 390.0 + 1.0 / 50.0));
+    browser.says(".state-text", &format!("Electrical conductance {} kS", four(electrical / 1e3))).await;
+    browser.says(".state-text", &format!("Thermal conductance {} mW/K", four(thermal * 1e3))).await;
+    browser.says("#trust-card", "Stiffer by coupling, at most").await;
+}
+
+#[tokio::test]
 async fn the_state_its_stress_and_its_warnings_are_in_sight_and_curves_are_not_covered() {
     let scene = Scene::start().await;
     let browser = &scene.browser;
