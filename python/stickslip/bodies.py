@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import KW_ONLY, dataclass, fields
 from typing import Any, ClassVar, Final, TypeAlias, Union
 
 import numpy as np
@@ -40,11 +40,16 @@ class Body(Part):
 
     With `prony` it has memory: the moduli are those of the instant, and each term is `(ratio, time)`, the part of them
     that relaxes and its time, s. Moves of such a contact have a `duration`.
+
+    With a `resistivity`, Ω·m, or a `conductivity`, W/(m·K), of both bodies the contact has a conductance.
     """
 
     youngs_modulus: Quantity
     poisson_ratio: Quantity | None = None
     prony: Sequence[tuple[Quantity, Quantity] | Mapping[str, Any]] | None = None
+    _: KW_ONLY
+    resistivity: Quantity | None = None
+    conductivity: Quantity | None = None
 
     def __post_init__(self) -> None:
         if self.poisson_ratio is None:
@@ -65,6 +70,9 @@ class Body(Part):
     def memory(self) -> list[Document] | None:
         """The terms of its Prony series."""
         return None if self.prony is None else terms(self.prony)
+
+    def _key(self) -> str:
+        return super()._key() + json.dumps(to_document({"prony": self.memory()}))
 
 
 def terms(prony: Sequence[Any]) -> list[Document]:

@@ -22,6 +22,7 @@ from .errors import Fault, InvalidInput, NotFound, ServerError, StickslipError, 
 from .members import MOST_PLACES
 from .optional import needed
 from .result import parse
+from .tables import columns_in_si, is_table
 
 httpx = needed("httpx", "client")
 
@@ -310,6 +311,10 @@ class ContactCalls:
 
     def observe(self, observations: Any) -> Steps[results.ObservationsReply]:
         """Follows a bench: displacements with the measured forces, and the forces that the contact predicts."""
+        if is_table(observations):
+            columns = columns_in_si(observations, ("displacement", "force"), ())
+            rows = zip(*columns.values(), strict=True)
+            observations = [dict(zip(columns, row, strict=True)) for row in rows]
         body = to_document({"observations": observations})
         reply = yield from self.calls.json("POST", f"{self.path}/observations", json=body, idempotent=True)
         return parse(results.ObservationsReply, reply)

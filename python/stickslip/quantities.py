@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -137,6 +137,10 @@ class Reading:
         """The JSON value of what is no text."""
         if _is_missing(value):
             return self._missing(place)
+        from .tables import columns_of, is_table
+
+        if is_table(value):
+            return self._of_table(columns_of(value), place)
         plain, mask, units = self._plain(value, place)
         if plain.dtype.kind in "OUT":
             if mask is not None and mask.any():
@@ -147,6 +151,18 @@ class Reading:
         if units is not None:
             numbers = self._converted(numbers, units, place)
         return self._checked(numbers, mask, place)
+
+    def _of_table(self, columns: Sequence[tuple[str, str | None, Any]], place: str) -> list[list[Any]]:
+        """The rows of a table of x, y and z; of another one a column has to be chosen, or its units would be lost."""
+        named = {name: (unit, column) for name, unit, column in columns}
+        axes = [name for name in "xyz" if name in named]
+        if set(axes) != set(named) or len(axes) < 2:
+            detail = f"a table of {', '.join(named)} is given"
+            raise refused(place, f"{detail}: give one of its columns, as table[{next(iter(named), 'x')!r}]")
+        read = [
+            Reading(self.name, "", f"{place}/{name}", stated=named[name][0]).column(named[name][1]) for name in axes
+        ]
+        return [list(row) for row in zip(*read, strict=True)]
 
     def _plain(self, value: Any, place: str) -> tuple[NDArray[Any], NDArray[np.bool_] | None, str | None]:
         """The array of a value, its mask, and the unit that its name or its attributes state."""

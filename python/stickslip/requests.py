@@ -83,7 +83,7 @@ def _path(given: Document) -> Document:
     if is_table(displacement) or isinstance(displacement, HasReply | Mapping):
         del way["displacement"]
         way |= path_of_moves(displacement)
-    for member in ("displacement", "force"):
+    for member in ("displacement", "force", "twist", "torque"):
         if quantities.is_number(way.get(member)):
             way[member] = [way[member]]
     return given

@@ -48,7 +48,7 @@ def _unit_beside(table: Any, name: Any, place: str) -> str | None:
     return stated or None
 
 
-def _columns(table: Any) -> list[tuple[str, str | None, Any]]:
+def columns_of(table: Any) -> list[tuple[str, str | None, Any]]:
     """The names of the columns without their units, the units that are stated, and the columns."""
     names = _names(table)
     if len(set(map(str, names))) < len(names):
@@ -89,7 +89,7 @@ def _cells(name: str, unit: str | None, column: Any) -> tuple[str, list[Any]]:
 
 def as_csv(table: Any) -> bytes:
     """A table as a file, which the importer reads by its rules."""
-    columns = [_cells(*column) for column in _columns(table)]
+    columns = [_cells(*column) for column in columns_of(table)]
     rows = [";".join(text.replace(";", " ") for text, _ in columns)]
     cells = zip(*(values for _, values in columns), strict=True)
     rows += [";".join("" if _is_missing(cell) else str(cell) for cell in row) for row in cells]
@@ -101,7 +101,7 @@ def columns_in_si(table: Any, members: Collection[str], beside: Collection[str])
 
     A table that has one of the columns `beside` may have others too, which are left out; no other table may.
     """
-    columns = _columns(table)
+    columns = columns_of(table)
     has_others = any(name in beside for name, *_ in columns)
     found: dict[str, list[Any]] = {}
     for name, unit, column in columns:

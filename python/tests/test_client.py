@@ -54,6 +54,15 @@ def test_undo_and_copy_on_a_server(api: ss.Client) -> None:
     assert contact.undo().force == 0.0
 
 
+def test_a_table_of_a_bench_is_observed(api: ss.Client) -> None:
+    import pandas
+
+    contact = api.Contact(ss.Sphere(0.01), ss.Moduli(1e11, 8e10), 0.3, normal_force=10.0)
+    found = contact.observe(pandas.DataFrame({"displacement (nm)": [10.0, 20.0], "force (mN)": [100.0, 200.0]}))
+    assert [item.displacement for item in found.items] == pytest.approx([1e-8, 2e-8])
+    assert contact.sequence == 2
+
+
 def test_states_are_followed(api: ss.Client) -> None:
     contact = ball(api)
     contact.path([1e-8, 2e-8, 3e-8])

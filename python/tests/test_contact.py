@@ -154,3 +154,17 @@ def test_tables_of_arrow_share_the_numbers_of_their_results() -> None:
     contact.move("50 nm")
     peaks = contact.residual()
     assert peaks.to_arrow().to_pandas().equals(peaks.to_frame())
+
+
+def test_bodies_that_conduct_have_the_conductance_of_their_constriction() -> None:
+    copper = ss.Body("copper", resistivity="17 nOhm*m", conductivity="390 W/(m·K)")
+    contact = ss.Contact(ss.Sphere("10 mm"), [copper, copper], friction=0.3, normal_force="10 N")
+    # Holm (1967): 4 a over the sum of the resistivities.
+    radius = contact.state.contact_radius
+    assert contact.state.electrical_conductance == pytest.approx(4.0 * radius / 3.4e-8, rel=1e-12)
+    assert contact.summary.thermal_conductance == pytest.approx(4.0 * radius / (2.0 / 390.0), rel=1e-12)
+    many = ss.Contacts(
+        profile=ss.Sphere(0.01), bodies=[ss.Body(2.1e11, 0.3, resistivity=[1e-7, 2e-7])] * 2, friction=0.3
+    )
+    many.step(normal_force=10.0, displacement=0.0)
+    assert many.state(0).electrical_conductance == pytest.approx(2.0 * many.state(1).electrical_conductance)

@@ -30,6 +30,8 @@ def test_parts_of_requests_are_equal_if_they_are_the_same_in_si_units() -> None:
     assert hash(ss.Sphere("10 mm")) == hash(ss.Sphere(0.01))
     assert ss.Sphere(0.01) != ss.ExactSphere(0.01)
     assert len({STEEL, ss.Body(2.1e11, 0.3), ss.Body(2.1e11, 0.25)}) == 2
+    assert ss.Body(2.1e11, 0.3, prony=[(0.5, 1.0)]) != STEEL != ss.Body(2.1e11, 0.3, resistivity=1e-7)
+    assert ss.Body(2.1e11, 0.3, prony=[(0.5, "1 s")]) == ss.Body("210 GPa", 0.3, prony=[{"ratio": 0.5, "time": 1.0}])
     assert ss.Definition(ss.Sphere(0.01), [ss.Body(2.1e11, 0.3), ss.RIGID], 0.3, normal_force=10.0) == BALL
     table = ss.Tabulated(r=[0.0, 1e-3], z=np.array([0.0, 1e-5]))
     assert table == ss.Tabulated(r=np.array([0.0, 1e-3]), z=["0 m", "10 um"])

@@ -362,6 +362,25 @@ def test_a_unit_of_an_unknown_package_is_refused() -> None:
     assert refused.value.code == "unknown_unit"
 
 
+def test_a_table_in_place_of_an_array_keeps_its_units_or_is_refused(here: ss.Contact) -> None:
+    pyarrow, polars = pytest.importorskip("pyarrow"), pytest.importorskip("polars")
+    places = {"z (um)": [1.0, 2.0], "x (um)": [0.0, 30.0], "y (mm)": [0.0, 0.01]}
+    expected = here.subsurface(points=[[0.0, 0.0, 1e-6], [3e-5, 1e-5, 2e-6]])
+    with_attributes_ = pandas.DataFrame({"x": [0.0, 30.0], "y": [0.0, 10.0], "z": [1.0, 2.0]})
+    with_attributes_.attrs["units"] = dict.fromkeys("xyz", "um")
+    structured = np.array([(0.0, 0.0, 1e-6), (3e-5, 1e-5, 2e-6)], dtype=[("x", float), ("y", float), ("z", float)])
+    tables: list[Any] = [pandas.DataFrame(places), polars.DataFrame(places), pyarrow.table(places), with_attributes_]
+    for table in [*tables, structured]:
+        found = here.subsurface(points=table)
+        for name in ("x", "y", "z", "xx"):
+            assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-9, abs=1e-20), type(table)
+    frame = pandas.DataFrame({"r (um)": [10.0, 20.0]})
+    for give in (lambda: here.stress(radii=frame), lambda: ss.cycle(here, frame), lambda: ss.Sphere(frame).document()):
+        with pytest.raises(ss.InvalidInput, match="give one of its columns"):
+            to_document(give())
+    assert here.stress(radii=frame["r (um)"]).radius == pytest.approx([1e-5, 2e-5])
+
+
 def test_tables_of_other_libraries_are_read_by_their_names(here: ss.Contact) -> None:
     pyarrow = pytest.importorskip("pyarrow")
     fields = pyarrow.schema([pyarrow.field("displacement", pyarrow.float64(), metadata={"unit": "nm"})])

@@ -68,6 +68,9 @@ def test_one_number_is_a_path_of_one_move(ball: ss.Contact) -> None:
     ball.path("10 nm")
     assert ball.path(force="0.5 N").force.tolist() == pytest.approx([0.5])
     assert ss.simulate(ball, 1e-8).displacement.tolist() == [1e-8]
+    twisted = ss.Contact(ss.Sphere(0.01), [STEEL, STEEL], 0.3, normal_force=10.0)
+    assert ss.simulate(twisted, twist="0.01 deg").steps[0].twist == pytest.approx(np.radians(0.01))
+    assert ss.simulate(twisted, torque="10 uN*m").steps[0].torque == pytest.approx(1e-5)
     assert ball.sequence == 2
 
 

@@ -27,7 +27,6 @@ export const MEANINGS = {
   "Wear ends at a contact radius of": "At a held indentation: the disc inside it never slips and keeps its shape.",
   "Remains, of μ p_max": "The largest shear stress that remains, over friction times the largest pressure.",
   "Error of forces, of μ F_N": "The estimated error of any force so far, over the friction limit.",
-  "Stiffer by coupling, at most":
-    "Unlike bodies shear each other as they are pressed together, which is neglected: the normal stiffness may be so much larger.",
+  "Stiffer by coupling, at most": "What the neglected coupling of unlike bodies can add to the normal stiffness.",
   "Error of stresses, of μ p_max": "The estimated error of a shear stress, over friction times the largest pressure.",
 };
