@@ -13,6 +13,15 @@ from . import quantities
 from .documents import Document, HasDocument, HasReply, Quantity, to_document
 
 
+def _as_floats(value: Any) -> Any:
+    """A document in which whole numbers are as those with a point."""
+    if isinstance(value, dict):
+        return {name: _as_floats(item) for name, item in value.items()}
+    if isinstance(value, list):
+        return [_as_floats(item) for item in value]
+    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+
+
 class Part:
     """A part of a request. Two parts are equal if they are the same in SI units."""
 
@@ -25,7 +34,7 @@ class Part:
         return kind | {name: value for name, value in given.items() if value is not None}
 
     def _key(self) -> str:
-        return json.dumps(to_document(self), sort_keys=True)
+        return json.dumps(_as_floats(to_document(self)), sort_keys=True)
 
     def __eq__(self, other: object) -> bool:
         return self._key() == other._key() if type(self) is type(other) and isinstance(other, Part) else NotImplemented
@@ -72,7 +81,7 @@ class Body(Part):
         return None if self.prony is None else terms(self.prony)
 
     def _key(self) -> str:
-        return super()._key() + json.dumps(to_document({"prony": self.memory()}))
+        return super()._key() + json.dumps(_as_floats(to_document({"prony": self.memory()})))
 
 
 def terms(prony: Sequence[Any]) -> list[Document]:

@@ -78,10 +78,10 @@ def _columns(ax: Axes, result: Any, **options: Any) -> None:
     if len(numbers) < 2 or len(result) < 2:
         raise TypeError(f"{result.schema} has no picture: use to_frame()")
     x, first = numbers[:2]
-    for name in numbers[1:]:
-        if units.get(name) == units.get(first):
-            ax.plot(columns[x], columns[name], **({"label": name} | options))
-    _axes(ax, (x, units.get(x, "")), ("" if len(numbers) > 2 else first, units.get(first, "")))
+    alike = [name for name in numbers[1:] if units.get(name) == units.get(first)]
+    for name in alike:
+        ax.plot(columns[x], columns[name], **({"label": name} | options))
+    _axes(ax, (x, units.get(x, "")), (first if len(alike) == 1 else "", units.get(first, "")))
     ax.legend()
 
 

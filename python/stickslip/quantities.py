@@ -157,8 +157,7 @@ class Reading:
         named = {name: (unit, column) for name, unit, column in columns}
         axes = [name for name in "xyz" if name in named]
         if set(axes) != set(named) or len(axes) < 2:
-            detail = f"a table of {', '.join(named)} is given"
-            raise refused(place, f"{detail}: give one of its columns, as table[{next(iter(named), 'x')!r}]")
+            raise refused(place, f"a table of {', '.join(named)} is given: give one of its columns")
         read = [
             Reading(self.name, "", f"{place}/{name}", stated=named[name][0]).column(named[name][1]) for name in axes
         ]

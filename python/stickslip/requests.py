@@ -119,7 +119,13 @@ def _profile_fit(given: Document) -> Document:
 
 def _sweep(given: Document) -> Document:
     base = {member: _object(member, value) for member, value in given["base"].items()}
-    if isinstance(base.get("path"), Mapping):
+    way = base.get("path")
+    if is_table(way) or isinstance(way, HasReply):
+        base["path"] = path_of_moves(way)
+    elif isinstance(way, list | tuple | str | np.ndarray):
+        # Displacements, as for `path`.
+        base["path"] = {"displacement": [way] if isinstance(way, str) else way}
+    elif isinstance(way, Mapping):
         base["path"] = {member: _object(member, value) for member, value in base["path"].items()}
     if "contact" in base:
         base["contact"] = definition(base["contact"])

@@ -29,6 +29,9 @@ def test_parts_of_requests_are_equal_if_they_are_the_same_in_si_units() -> None:
     assert ss.Sphere("10 mm") == ss.Sphere(0.01) == ss.Sphere(1 * pint.cm) != ss.Sphere(0.02)
     assert hash(ss.Sphere("10 mm")) == hash(ss.Sphere(0.01))
     assert ss.Sphere(0.01) != ss.ExactSphere(0.01)
+    assert ss.Sphere(1) == ss.Sphere("1 m") == ss.Sphere(1.0)
+    steel = ss.Definition(ss.Sphere(1), ["steel", "rigid"], 0, normal_force=10)
+    assert steel == ss.Definition(ss.Sphere("1 m"), [ss.Body("210 GPa", 0.3), ss.RIGID], "0 %", normal_force="10 N")
     assert len({STEEL, ss.Body(2.1e11, 0.3), ss.Body(2.1e11, 0.25)}) == 2
     assert ss.Body(2.1e11, 0.3, prony=[(0.5, 1.0)]) != STEEL != ss.Body(2.1e11, 0.3, resistivity=1e-7)
     assert ss.Body(2.1e11, 0.3, prony=[(0.5, "1 s")]) == ss.Body("210 GPa", 0.3, prony=[{"ratio": 0.5, "time": 1.0}])

@@ -66,6 +66,16 @@ def test_the_path_of_a_protocol_is_followed(here: ss.Contact) -> None:
     assert reply.residual.max == pytest.approx(found.residual.max, rel=1e-9)
 
 
+def test_the_path_of_a_sweep_may_be_what_any_path_is(here: ss.Contact) -> None:
+    protocol = ss.protocols(here, 4)
+    tables = [protocol.path, protocol, pandas.DataFrame({"displacement (nm)": 1e9 * protocol.path.displacement})]
+    tables += [protocol.path.displacement, protocol.path.displacement.tolist(), protocol.path.document]
+    for way in tables:
+        base = {"contact": here, "path": way, "residual": True}
+        found = ss.sweep(base, {"/contact/friction": [0.3]}, {"max": "/residual/max"})
+        assert found.columns["max"] == pytest.approx([protocol.residual.max], rel=1e-9)
+
+
 def test_states_a_history_and_their_table_are_passed_through_again(here: ss.Contact) -> None:
     first = here.copy()
     reply = first.path(moves=[{"displacement": 1e-7}, {"indentation": 8e-7, "displacement": 2e-8}, {"force": 0.1}])
