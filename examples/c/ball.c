@@ -1,4 +1,4 @@
-/* A steel ball on a rigid plane: a loop, a trial that is taken back, a restart. */
+/* A steel ball on a steel plane: a loop, a trial that is taken back, a restart. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +8,8 @@
 
 static const char *BALL =
     "{\"profile\": {\"type\": \"sphere\", \"radius\": 0.01},"
-    " \"material\": {\"bodies\": [{\"youngs_modulus\": 2.1e11, \"poisson_ratio\": 0.3}, \"rigid\"]},"
+    " \"material\": {\"bodies\": [{\"youngs_modulus\": 2.1e11, \"poisson_ratio\": 0.3},"
+    " {\"youngs_modulus\": 2.1e11, \"poisson_ratio\": 0.3}]},"
     " \"friction\": 0.3, \"preload\": {\"normal_force\": 10.0}}";
 
 static void check(int code) {
@@ -33,7 +34,7 @@ int main(void) {
     check(ss_state(ball, &state));
     /* Cattaneo (1938): half-way to gross slip the force is mu F_N (1 - (1/2)^(3/2)). u_max is mu times the ratio of
      * the reduced moduli times d. */
-    double moduli = (2.0 - 0.3) / (2.0 * (1.0 - 0.3)); /* Of an elastic body on a rigid one. */
+    double moduli = (2.0 - 0.3) / (2.0 * (1.0 - 0.3)); /* Of bodies of one material. */
     double full = 0.3 * moduli * state.indentation, half = 0.5 * full;
     check(ss_step(ball, SS_CONSTANT_LOAD, 0.0, &half, forces));
     expect(fabs(forces[1] / (3.0 * (1.0 - pow(0.5, 1.5))) - 1.0) < 1e-12, "the force of Cattaneo");

@@ -37,7 +37,7 @@ def main(files: tuple[str, str] | None = None) -> pandas.DataFrame:
     ball, worn = (pandas.read_csv(io.StringIO(text)) for text in texts)
     guess = ss.Definition(BODIES[0], STEEL, friction=0.3, normal_force=LOAD)
     measured = (1e-6 * ball["displacement_um"].to_numpy(), ball["force_n"].to_numpy())
-    fit = ss.fit_loop(guess, measured, free=["friction", "g_star", "machine_compliance"], start="steady")
+    fit = ss.fit(guess, measured, free=["friction", "g_star", "machine_compliance"], start="steady")
     friction, compliance = (fit.estimates[name].value for name in ("friction", "machine_compliance"))
     e_star = 210e9 / (2 * (1 - 0.3**2))
     moduli = ss.Moduli(e_star, fit.estimates["g_star"].value)

@@ -19,7 +19,7 @@ def main(file: str | Path = FILE) -> pandas.DataFrame:
     guess = ss.Definition(ss.Sphere("10 mm"), [steel, ss.RIGID], friction=0.3, normal_force="10 N")
     loop = ss.read_loop(file)
     free = ["friction", "g_star", "machine_compliance", "force_offset"]
-    fit = ss.fit_loop(guess, loop, free=free, start="steady")
+    fit = ss.fit(guess, loop, free=free, start="steady")
     return fit.estimates.to_frame()
 
 

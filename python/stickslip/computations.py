@@ -240,7 +240,7 @@ class Computations(ABC):
         }
         return self._answer(results.CycleReply, "/cycle", given, parts)
 
-    def fit_loop(
+    def fit(
         self,
         contact: ContactLike,
         loops: LoopLike | Sequence[LoopLike],
@@ -299,7 +299,7 @@ class Computations(ABC):
         Examples
         --------
         >>> import stickslip as ss
-        >>> reply = ss.fit_loop(
+        >>> reply = ss.fit(
         ...     contact=ss.Definition(ss.Sphere(radius=0.01), [ss.Body(2.1e+11, 0.3), ss.Body(2.1e+11, 0.3)], 0.2,
         ...         normal_force=10.0),
         ...     loops=[{'displacement': [0.41, 0.3416, 0.2734, 0.2049, 0.1367, 0.0683, 0.0, -0.0683, -0.1367,
@@ -1146,6 +1146,8 @@ class Computations(ABC):
         }
         return self._answer(results.WearReply, "/wear", given, parts)
 
+    fit_loop = fit
+
 
 @explained
 class AsyncComputations(ABC):
@@ -1235,7 +1237,7 @@ class AsyncComputations(ABC):
         }
         return await self._answer(results.CycleReply, "/cycle", given, parts)
 
-    async def fit_loop(
+    async def fit(
         self,
         contact: ContactLike,
         loops: LoopLike | Sequence[LoopLike],
@@ -1246,7 +1248,7 @@ class AsyncComputations(ABC):
         units: bool | types.FitUnits | Mapping[str, Any] | None = None,
         start: types.LoopStart | None = None,
     ) -> results.FitReply:
-        """`fit_loop`, awaited."""
+        """`fit`, awaited."""
         given: Document = {
             "contact": contact,
             "free": free,
@@ -1624,6 +1626,8 @@ class AsyncComputations(ABC):
             },
         }
         return await self._answer(results.WearReply, "/wear", given, parts)
+
+    fit_loop = fit
 
 
 @explained

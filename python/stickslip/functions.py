@@ -7,6 +7,7 @@ compute = _local.compute
 compute_bytes = _local.compute_bytes
 accuracy = _local.accuracy
 cycle = _local.cycle
+fit = _local.fit
 fit_loop = _local.fit_loop
 fit_profile = _local.fit_profile
 fretting = _local.fretting
@@ -22,6 +23,7 @@ __all__ = [
     "compute_bytes",
     "accuracy",
     "cycle",
+    "fit",
     "fit_loop",
     "fit_profile",
     "fretting",

@@ -123,7 +123,7 @@ MOST_PLACES = 10000
 METHODS: dict[str, str] = {
     "/accuracy": "accuracy",
     "/cycle": "cycle",
-    "/fit": "fit_loop",
+    "/fit": "fit",
     "/fretting": "fretting",
     "/profiles/fit": "fit_profile",
     "/protocols": "protocols",

@@ -104,7 +104,7 @@ def test_a_loop_is_taken_in_every_form() -> None:
     ]
     guess = ss.Definition(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.5, normal_force=10.0)
     for given, units in forms:
-        fit = ss.fit_loop(guess, given, free=["friction", "g_star"], units=units)
+        fit = ss.fit(guess, given, free=["friction", "g_star"], units=units)
         assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-6), type(given)
 
 
@@ -117,7 +117,7 @@ def test_columns_of_pint_pandas_keep_their_units(here: ss.Contact) -> None:
             "force": pandas.Series(1e3 * f, dtype="pint[mN]"),
         }
     )
-    fit = ss.fit_loop(BALL, table, free=["friction", "g_star"])
+    fit = ss.fit(BALL, table, free=["friction", "g_star"])
     assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-6)
     turns = pandas.Series([10.0, -20.0], dtype="pint[nm]")
     for given in (turns, pandas.DataFrame({"displacement": turns})):
@@ -147,7 +147,7 @@ def test_what_is_no_loop_is_refused_and_units_are_not_named_twice() -> None:
             requests.loops(wrong, None)
         assert refused.value.pointer == "/loops"
     with pytest.raises(ss.InvalidInput) as refused:
-        ss.fit_loop(BALL, (1e9 * u * pint.nm, f * pint.N), units={"displacement": "nm", "force": "N"})
+        ss.fit(BALL, (1e9 * u * pint.nm, f * pint.N), units={"displacement": "nm", "force": "N"})
     assert refused.value.pointer == "/units"
 
 

@@ -30,7 +30,7 @@ PROJECT = textwrap.dedent("""
     assert_type(path.steps[0], results.State)
     force: float = path.steps[0].force
     largest: float | None = ss.cycle(ball, ["10 nm"]).contact.max_pressure
-    fit = ss.fit_loop(ball, (path.displacement, path.force), free=["friction"], start="virgin")
+    fit = ss.fit(ball, (path.displacement, path.force), free=["friction"], start="virgin")
     rated = ball.fretting(1e-8, bulk={"mean": 1e6}, crossland={"alpha": 0.3, "limit": "300 MPa"})
     punch = ss.RoundedPunch(flat_radius=1e-3, edge_radius="5 mm")
     plane = ss.Plane(normal="y", offset=0.0, x=[-1e-4, 1e-4, 5], z=[0.0, 1e-4, 4])

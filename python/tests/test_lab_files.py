@@ -50,7 +50,7 @@ def measured(found: Any, name: str) -> float:
     if name == "friction":
         contact = ss.Definition(ss.Sphere("10 mm"), [ss.Body("210 GPa", 0.3), ss.RIGID], 0.25, "10 N")
         known = {"machine_compliance": {"value": 0.0}}
-        fit = ss.fit_loop(contact, found, free=["friction", "g_star"], start="steady", known=known)
+        fit = ss.fit(contact, found, free=["friction", "g_star"], start="steady", known=known)
         return float(fit.estimates["friction"].value)
     return float(found.loop["time"][-1] if name == "last_time" else found.loop[name])
 

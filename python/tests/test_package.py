@@ -98,6 +98,11 @@ def test_every_profile_has_its_class(openapi: dict[str, Any]) -> None:
     assert set(profiles.__all__) <= set(ss.__all__)
 
 
+def test_an_earlier_name_stays() -> None:
+    assert ss.fit_loop == ss.fit
+    assert "fit_loop" in ss.__all__
+
+
 def test_every_computation_has_its_path_and_method(openapi: dict[str, Any]) -> None:
     served = {name: path for name, path in _native.names() if path is not None}
     assert served == engine.PATHS

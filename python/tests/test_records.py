@@ -98,7 +98,7 @@ def test_a_profile_a_contact_and_a_definition_of_a_reply_are_taken(here: ss.Cont
     assert ss.Contact(scan.profile, [STEEL, ss.RIGID], 0.3, normal_force=1.0).sequence == 0
     displacement = 2e-7 * np.cos(np.linspace(0.0, 2.0 * np.pi, 81))
     force = here.copy().path(displacement).force
-    fit = ss.fit_loop(here, (displacement[1:], force[1:]))
+    fit = ss.fit(here, (displacement[1:], force[1:]))
     assert ss.Contact.from_definition(fit.contact).sequence == 0
     assert len(ss.cycle(fit.contact, 1e-8)) == 1
 

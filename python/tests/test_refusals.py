@@ -236,5 +236,5 @@ def test_loop_of_arrays_gives_its_friction() -> None:
     displacement = turn * np.cos(np.linspace(0.0, 2.0 * np.pi, 81))[1:]
     found = contact.path(displacement)
     force = found.force
-    fit = ss.fit_loop(defined(friction=0.5), (displacement, force), free=["friction", "g_star"])
+    fit = ss.fit(defined(friction=0.5), (displacement, force), free=["friction", "g_star"])
     assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-6)

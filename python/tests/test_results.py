@@ -20,7 +20,7 @@ from stickslip.engine import PATHS
 from stickslip.result import as_column
 
 API = json.loads((ROOT / "openapi" / "openapi.json").read_text())
-METHODS = {"fit": "fit_loop", "profile": "fit_profile", "protocol": "protocols"}
+METHODS = {"profile": "fit_profile", "protocol": "protocols"}
 
 
 def examples(path: str) -> dict[str, Any]:
@@ -132,7 +132,7 @@ def test_every_computation_has_a_table(ball: ss.Contact) -> None:
     assert accuracy["solver"].tolist() == ["exact", "springs"]
     assert accuracy["count"].iloc[1] == 50
     assert len(ss.protocols(ball, 4).to_frame()) == 5
-    fit = ss.fit_loop(**flattened("fit", examples("/fit")["steady"]))
+    fit = ss.fit(**flattened("fit", examples("/fit")["steady"]))
     assert list(fit.estimates.to_frame().index) == ["friction", "g_star"]
     # Where there is no value the JSON says null, and the attribute is None.
     assert ss.fretting(ball, 1e-8, crossland={"alpha": 0.3}).crossland.margin is None

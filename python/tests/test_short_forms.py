@@ -86,7 +86,7 @@ def test_short_forms_are_their_documents(here: ss.Contact, tmp_path: Any) -> Non
     rows = [f"{1e6 * one};{other}" for one, other in zip(u[1:], force[1:], strict=True)]
     path.write_text("displacement (um);force (N)\n" + "\n".join(rows))
     for given in (path, str(path), path.read_bytes()):
-        fit = ss.fit_loop(here, given, free=["friction"], known={"machine_compliance": 0.0})
+        fit = ss.fit(here, given, free=["friction"], known={"machine_compliance": 0.0})
         assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-4)
 
 
@@ -135,7 +135,7 @@ def test_messages_are_in_words_of_the_package(here: ss.Contact, call: Any, words
 
 def test_help_names_allowed_values_members_and_defaults() -> None:
     for function, texts in (
-        (ss.fit_loop, ["'friction', 'g_star'", "If left out: friction, g_star", "machine_compliance"]),
+        (ss.fit, ["'friction', 'g_star'", "If left out: friction, g_star", "machine_compliance"]),
         (
             ss.fretting,
             ["'first', 'second'", "Needs `alpha`", "`length`, `method`", "body that is not rigid"],
@@ -157,7 +157,7 @@ def test_results_are_printed_with_units(here: ss.Contact) -> None:
     here.move("50 nm")
     assert "displacement=50 nm" in repr(here.state)
     u = 3e-7 * np.cos(np.linspace(0.0, 2.0 * np.pi, 81))
-    fit = ss.fit_loop(here, (u[1:], here.copy().path(u).force[1:]))
+    fit = ss.fit(here, (u[1:], here.copy().path(u).force[1:]))
     assert "friction: 0.3" in str(fit)
     assert "±" in str(fit)
     html = here._repr_html_()

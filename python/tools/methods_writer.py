@@ -21,6 +21,7 @@ from openapi_schemas import (
     words_of,
 )
 from requests_writer import (
+    ALIASES,
     SHORT_MEMBERS,
     alternatives,
     class_name,
@@ -333,7 +334,7 @@ NOTES = {
         "place of `axes` the reply says how sure the outputs are."
     ),
     ("fit_profile", False): "The scan may be a file that was read, a table with named columns, or arrays of x and z.",
-    ("fit_loop", False): (
+    ("fit", False): (
         OF_DEFINITION
         + " A loop may be a file that was read, a table with named columns, or arrays of displacement and "
         "force. `start` states how all of them begin."
@@ -401,13 +402,15 @@ def methods_file(api: Schema) -> str:
             ]
             for method in methods:
                 text += method.write(is_async)
+            here = {method.name for method in methods}
+            text += [f"\n    {alias} = {own}" for alias, own in ALIASES.items() if own in here]
             text.append("")
     return "\n".join(text)
 
 
 def functions_file(api: Schema) -> str:
     """The computations as functions of the module."""
-    names = ["compute", "compute_bytes", *sorted(method_name(path) for path, _ in computations(api))]
+    names = ["compute", "compute_bytes", *sorted([*(method_name(path) for path, _ in computations(api)), *ALIASES])]
     return "\n".join(
         [
             '"""The computations of this process as functions. Written by `tools/generate.py`."""\n',

@@ -24,7 +24,9 @@ PLACES = {"Line": "SubsurfaceLine", "Plane": "SubsurfacePlane", "Surface": "Subs
 #: Shapes that may be given by their diameter.
 ROUND = ('"sphere"', '"exact_sphere"', '"cylinder"')
 #: The method of a computation where it is not the last part of its path.
-METHODS = {"/fit": "fit_loop", "/profiles/fit": "fit_profile"}
+METHODS = {"/profiles/fit": "fit_profile"}
+#: Earlier names of methods, which stay.
+ALIASES = {"fit_loop": "fit"}
 #: Members whose one number may stand for the whole object, in the order in which they are looked for.
 SHORT_MEMBERS = ("reversals", "stiffness", "points", "amplitude")
 #: The spelling of units in the table of the engine.

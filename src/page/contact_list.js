@@ -2,6 +2,7 @@
 import { call, pages } from "./api.js";
 import { copyMenu } from "./copy_as_code.js";
 import { debounce, el, latestOnly } from "./dom.js";
+import { firstContact } from "./first_contact.js";
 import { PROFILES } from "./form_options.js";
 import { formatQuantity } from "./units.js";
 
@@ -55,18 +56,6 @@ export async function contactList(main, signal) {
       oninput: (event) => ask(event.target.value),
     }),
   );
-  const empty = el(
-    "section",
-    { class: "card welcome" },
-    el("h2", {}, "No contact yet"),
-    el(
-      "p",
-      {},
-      "A ball is pressed on a plane and moved sideways: its middle sticks, a ring at its edge slips, and what it " +
-        "does next depends on all that it has done before. Make a contact, move it, and watch.",
-    ),
-    el("a", { class: "button primary", href: "#/new" }, "Make the first contact"),
-  );
   main.replaceChildren(
     el(
       "div",
@@ -75,7 +64,7 @@ export async function contactList(main, signal) {
       el("a", { class: "button primary", href: "#/new", id: "new" }, "New contact"),
       copyMenu(() => [{ method: "GET", path: "/contacts?limit=1000" }]),
     ),
-    ...(items.length ? [field, said, rows] : [empty]),
+    ...(items.length ? [field, said, rows] : [firstContact(signal)]),
   );
 }
 

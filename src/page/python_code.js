@@ -1,7 +1,7 @@
 // The requests behind what is on screen, in Python with the package `stickslip`.
 
 /** Methods of a client whose names are not the paths of their computations. */
-const METHODS = { "/fit": "fit_loop", "/profiles/fit": "fit_profile" };
+const METHODS = { "/profiles/fit": "fit_profile" };
 /** Members whose own members are keywords of the methods. */
 const FLATTENED = ["path", "drive", "criteria"];
 /** What a contact is asked for by a body. */

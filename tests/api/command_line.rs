@@ -36,6 +36,14 @@ fn every_shell_completes_every_command() {
 }
 
 #[test]
+fn a_computation_is_found_by_its_name_in_the_api() {
+    for (alias, name) in [("protocols", "protocol"), ("fit-profile", "profile")] {
+        assert_eq!(printed(&[alias, "--help"]).replace(alias, name), printed(&[name, "--help"]).replace(alias, name));
+        assert!(printed(&["--help"]).contains(&format!("[aliases: {alias}]")), "the help names {alias}");
+    }
+}
+
+#[test]
 fn every_command_has_a_manual_page() {
     let folder = tempfile::tempdir().unwrap();
     let pages = folder.path().join("man");

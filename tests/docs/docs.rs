@@ -112,6 +112,40 @@ async fn the_calls_of_the_readme_run_as_printed() {
     assert!(server.client.contacts(None, None).await.unwrap().items.is_empty());
 }
 
+/// The pages by question of the README, which begin with a result.
+const BY_QUESTION: [&str; 10] = [
+    "contacts.md",
+    "cycles.md",
+    "fretting.md",
+    "line-contacts.md",
+    "measured-loops.md",
+    "measured-surfaces.md",
+    "plane.md",
+    "residual-stress.md",
+    "rough-contacts.md",
+    "sweeps.md",
+];
+
+#[test]
+fn a_page_by_question_asks_shows_a_result_and_says_how_to_read_it_and_when_not_to_trust_it() {
+    for name in BY_QUESTION {
+        let text = page(name);
+        let (top, rest) = text.split_once("\n## ").unwrap();
+        let question = top.split("\n\n").nth(1).unwrap();
+        assert!(question.contains('?'), "{name} begins with its question: {question}");
+        let at = |what: &str| top.find(what).unwrap_or_else(|| panic!("{name}: no {what} before the first heading"));
+        let order = ["```python\n", "```sh\n", "!["].map(at);
+        assert!(order.is_sorted(), "{name}: Python, curl, picture");
+        for language in ["python", "sh"] {
+            let shown = blocks(top, language);
+            assert!(shown.iter().any(|(_, output)| output.is_some()), "{name}: a result below {language}");
+        }
+        let headings: Vec<&str> = rest.split("\n## ").filter_map(|section| section.lines().next()).collect();
+        assert_eq!(headings[0], "How to read it", "{name}");
+        assert!(headings.contains(&"When not to trust it"), "{name}: {headings:?}");
+    }
+}
+
 #[test]
 fn the_readme_is_one_screen() {
     let words = std::fs::read_to_string(file("README.md")).unwrap().split_whitespace().count();

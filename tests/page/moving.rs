@@ -27,6 +27,27 @@ const WAY: &str = "(document.querySelector('#plot-loop .line.past')?.getAttribut
     '').slice(1).split('L').map((p) => p.split(',').map(Number))";
 
 #[tokio::test]
+async fn an_empty_service_shows_an_example_and_makes_it_on_request() {
+    let server = Process::with("memory:", &[]);
+    let browser = crate::browser::Browser::start(1280, 900, false).await;
+    browser.page.goto(&server.base).await.unwrap();
+    // Like bodies have half the reduced modulus of one on a rigid plane; after 20 reversals 17.3 % remain (Kraft & Pohrt).
+    let expected = format!("contact radius {}", hertz(10.0, 0.01, 2.0));
+    browser.says("#example", &expected).await;
+    browser.says("#example", "keeps a shear stress of 17 % of μ p_max").await;
+    assert!(server.client.contacts(None, None).await.unwrap().items.is_empty(), "the example stores nothing");
+    browser.click("#open-example").await;
+    browser.until(LIVE).await;
+    let made = server.client.contacts(None, None).await.unwrap().items;
+    let residual = reqwest::get(format!("{}/contacts/{}/residual", server.base, made[0].id)).await.unwrap();
+    let left = residual.json::<Value>().await.unwrap()["relative"].as_f64().unwrap();
+    assert!(made.len() == 1 && (left - 0.17335).abs() < 1e-4, "{left}");
+    browser.page.goto(&format!("{}/#/", server.base)).await.unwrap();
+    browser.says("body", "ball, 20 reversals of falling amplitude").await;
+    browser.close().await;
+}
+
+#[tokio::test]
 async fn a_contact_is_made_moved_reloaded_and_followed() {
     let server = Process::with("memory:", &[]);
     let browser = crate::browser::Browser::start(1280, 900, false).await;

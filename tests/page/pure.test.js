@@ -207,7 +207,7 @@ print(contact.move(displacement=1e-7))
 print(contact.relax(reversals=20, dry_run=True))
 print(contact.history())
 print(api.simulate(${definition}, falling_amplitude={"reversals": 20}, residual=True))
-print(api.fit_loop(${definition}, loops=[{"force": [1, None]}]))`,
+print(api.fit(${definition}, loops=[{"force": [1, None]}]))`,
   );
   assert.match(pythonCode([], "https://lab", true), /^import os\n\nimport .*key=os.environ\["STICKSLIP_KEY"\]\)$/s);
   assert.match(pythonCode([{ method: "POST", path: "/contacts", body: contact }], "", false), /from_definition/);

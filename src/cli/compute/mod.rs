@@ -130,6 +130,9 @@ fn flags(name: &str) -> FlagsOf {
     }
 }
 
+/// Commands whose computation has another name in the API or in Python, by which they are found too.
+const ALIASES: [(&str, &str); 2] = [("protocol", "protocols"), ("profile", "fit-profile")];
+
 fn command(about: &About) -> Command {
     let formats = about.formats.iter().map(|format| format.name()).collect::<Vec<_>>();
     let format = format!("The format [default: {}]. {}", about.printed.name(), about.shows);
@@ -148,7 +151,8 @@ fn command(about: &About) -> Command {
     }
     // After the flags, whose own description would take its place.
     let long = format!("{}\n\n{}", about.title, about.description);
-    flags(about.name).0(command).about(about.title).long_about(long)
+    let aliases = ALIASES.iter().filter(|(name, _)| *name == about.name).map(|(_, alias)| *alias);
+    flags(about.name).0(command).about(about.title).long_about(long).visible_aliases(aliases)
 }
 
 impl Subcommand for Compute {
