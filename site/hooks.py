@@ -37,9 +37,13 @@ def links(path: str) -> set[str]:
 
 
 def on_files(files: Files, config: object) -> Files:
-    """Adds the pages outside docs/, and what any page links to."""
-    pages = [f"docs/{file.src_uri}" for file in files if file.src_uri.endswith(".md")] + list(PAGES)
-    wanted = set(PAGES).union(*map(links, pages))
+    """Adds the pages outside docs/, and what any page links to, those that are added too."""
+    pending = [f"docs/{file.src_uri}" for file in files if file.src_uri.endswith(".md")] + list(PAGES)
+    wanted = set(PAGES)
+    while pending:
+        found = links(pending.pop()) - wanted
+        wanted |= found
+        pending += [path for path in found if path.endswith(".md") and not path.startswith("docs/")]
     for path in sorted(path for path in wanted if not path.startswith("docs/")):
         files.append(File.generated(config, place(path), abs_src_path=str(ROOT / path)))
     return files
@@ -54,7 +58,8 @@ def tabs(match: re.Match[str]) -> str:
 def on_page_markdown(markdown: str, page: object, **_: object) -> str:
     """Leads links of the repository to the same file in the site, and sets Python and shell in tabs."""
     own = page.file.src_uri
-    source = next((path for path, at in PAGES.items() if at == own), f"docs/{own}")
+    inside = own.removeprefix(f"{REPOSITORY}/")
+    source = next((path for path, at in PAGES.items() if at == own), inside if inside != own else f"docs/{own}")
 
     def led(match: re.Match[str]) -> str:
         target = place(normpath(PurePosixPath(source).parent / match[2]))
