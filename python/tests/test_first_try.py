@@ -36,7 +36,7 @@ def test_a_csv_by_pandas_gives_its_friction(tmp_path: Path) -> None:
     force = ball().path(1e-6 * u).force
     table = {"displacement (um)": u[1:], "force (mN)": 1e3 * force[1:]}
     pandas.DataFrame(table).to_csv(tmp_path / "loop.csv", index=False)
-    fit = ss.fit_loop(ball(), pandas.read_csv(tmp_path / "loop.csv"))
+    fit = ss.fit(ball(), pandas.read_csv(tmp_path / "loop.csv"))
     assert fit.estimates["friction"].value == pytest.approx(0.3, rel=1e-6)
 
 

@@ -116,8 +116,8 @@ def test_a_url_needs_no_scheme() -> None:
         (lambda ball: ball.path(forces=[1.0]), "did you mean force? known are cycles, displacement"),
         (lambda ball: ss.cycle(ball, amplitude=1e-8), "ss.cycle has no keyword 'amplitude': known are"),
         (
-            lambda ball: ss.fit_loop(ball, [0.0, 1.0], [0.0, 1.0]),
-            "ss.fit_loop takes contact and loops without their na",
+            lambda ball: ss.fit(ball, [0.0, 1.0], [0.0, 1.0]),
+            "ss.fit takes contact and loops without their na",
         ),
         (lambda ball: ball.subsurface({}), "contact.subsurface takes no argument without its name"),
         (lambda ball: ss.sliders(ball), "expected one of `count`, `force_error`, `work_error`"),

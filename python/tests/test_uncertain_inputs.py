@@ -72,7 +72,7 @@ def test_an_estimate_of_a_fit_is_an_input() -> None:
     contact.path([turn])
     u = turn * np.cos(np.linspace(0.0, 2.0 * np.pi, 81))[1:]
     noise = np.random.default_rng(2).normal(0.0, 0.01, 80)
-    fit = ss.fit_loop(BALL, (u, contact.path(u).force + noise), free=["friction", "g_star"])
+    fit = ss.fit(BALL, (u, contact.path(u).force + noise), free=["friction", "g_star"])
     friction = fit.estimates["friction"]
     (entry,) = requests.inputs({"/contact/friction": friction})
     assert entry["normal"] == {"mean": friction.value, "standard_uncertainty": friction.standard_error}
