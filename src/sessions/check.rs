@@ -66,9 +66,13 @@ impl fmt::Display for Finding {
 impl fmt::Display for Checked {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Checked { contacts, moves, snapshots, foreign_snapshots, findings } = self;
-        write!(formatter, "checked {contacts} contacts, {moves} moves, {snapshots} snapshots: {findings} findings")?;
+        let counted = |count: u64, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        let [contacts, moves] = [counted(*contacts, "contact"), counted(*moves, "move")];
+        let [snapshots, findings] = [counted(*snapshots, "snapshot"), counted(*findings, "finding")];
+        write!(formatter, "checked {contacts}, {moves}, {snapshots}: {findings}")?;
         if *foreign_snapshots > 0 {
-            write!(formatter, "; {foreign_snapshots} snapshots are of another engine and are not used")?;
+            let are = if *foreign_snapshots == 1 { "is" } else { "are" };
+            write!(formatter, "; {} {are} of another engine and not used", counted(*foreign_snapshots, "snapshot"))?;
         }
         Ok(())
     }
@@ -284,4 +288,18 @@ fn difference(record: &Record, replayed: &State, scale: &mut [f64; QUANTITIES], 
     }
     let what = || format!("move {} is recorded with {}", record.sequence, differing.join(", "));
     (!differing.is_empty()).then(what)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Checked;
+
+    #[test]
+    fn one_of_a_kind_is_counted_in_the_singular() {
+        let one = Checked { contacts: 1, moves: 1, snapshots: 1, foreign_snapshots: 1, findings: 1 };
+        let said = "checked 1 contact, 1 move, 1 snapshot: 1 finding; 1 snapshot is of another engine and not used";
+        assert_eq!(one.to_string(), said);
+        let two = Checked { contacts: 2, moves: 3, ..Checked::default() };
+        assert_eq!(two.to_string(), "checked 2 contacts, 3 moves, 0 snapshots: 0 findings");
+    }
 }
