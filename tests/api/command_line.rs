@@ -39,7 +39,7 @@ fn every_shell_completes_every_command() {
 fn a_computation_is_found_by_its_name_in_the_api() {
     for (alias, name) in [("protocols", "protocol"), ("fit-profile", "profile")] {
         assert_eq!(printed(&[alias, "--help"]).replace(alias, name), printed(&[name, "--help"]).replace(alias, name));
-        assert!(printed(&["--help"]).contains(&format!("[aliases: {alias}]")), "the help names {alias}");
+        assert!(printed(&["--help"]).contains(&format!("[alias: {alias}]")), "the help names {alias}");
     }
 }
 
