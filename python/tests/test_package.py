@@ -100,7 +100,7 @@ def test_every_profile_has_its_class(openapi: dict[str, Any]) -> None:
 
 def test_an_earlier_name_stays() -> None:
     ball = ss.Definition(ss.Sphere("10 mm"), ["100Cr6", "100Cr6"], 0.3, normal_force="10 N")
-    path = ss.Contact.from_definition(ball).path([f"{10 * k} nm" for k in range(40)])
+    path = ss.Contact.from_definition(ball).path(["0.2 um", "50 nm", "-0.2 um", "-50 nm"] * 4)
     fits = [
         fit(ball, (path.displacement, path.force), free=["friction"], start="virgin") for fit in (ss.fit, ss.fit_loop)
     ]
