@@ -34,7 +34,7 @@ pub async fn life(service: &str) -> Result<Vec<String>, Box<dyn std::error::Erro
     let once = Options { idempotency_key: Some("first-move".to_owned()), ..Options::default() };
     for _ in 0..2 {
         let moved = client.apply(made.id, &Move { force: Some(1.5), ..Move::default() }.into(), &once).await?;
-        lines.push(format!("move {}: {:e} m", moved.sequence, moved.state.displacement));
+        lines.push(format!("move {}: {:e} m", moved.sequence, moved.state.displacement.unwrap_or_default()));
     }
 
     // A refused move: the problem says where and why.
@@ -49,7 +49,7 @@ pub async fn life(service: &str) -> Result<Vec<String>, Box<dyn std::error::Erro
 
     let mut events = client.events(made.id, Some(0)).await?;
     if let Some(Event::State(state)) = events.next().await.transpose()? {
-        lines.push(format!("event {}: {} N", state.sequence, state.state.force));
+        lines.push(format!("event {}: {} N", state.sequence, state.state.force.unwrap_or_default()));
     }
     drop(events);
     client.delete(made.id, &Options::default()).await?;

@@ -56,8 +56,7 @@ pub fn points(contact: &Contact, range: Range<usize>, points: usize, stop: &dyn 
                 stop.check().map_err(Failure::from)?;
                 // A target on the way may be out of range, such as a force of 1e-300 N; then there is no point.
                 if copy.apply(&before.partial_move(&step.step(), part)).is_ok() {
-                    let state = copy.state();
-                    page.push(sequence, part, state.displacement, state.force);
+                    page.push(sequence, part, &copy.state().into());
                 }
             }
             page.push_end(sequence, &after.state().into(), None);

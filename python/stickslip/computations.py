@@ -143,6 +143,8 @@ class Computations(ABC):
         displacement: Quantity | Quantities | None = None,
         *,
         force: Quantity | Quantities | None = None,
+        twist: Quantity | Quantities | None = None,
+        torque: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
         frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
@@ -172,6 +174,10 @@ class Computations(ABC):
             Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
         force : Quantity | Quantities
             Amplitude of the tangential force, N; below μ F_N.
+        twist : Quantity | Quantities
+            Amplitude of the angle of twist, rad: of the indenter or, with `machine`, of the machine.
+        torque : Quantity | Quantities
+            Amplitude of the torque, N·m; below that of gross slip.
         best_load : int | bool | BestLoadStudy | dict
             Ask for the normal force under which each amplitude does the most friction work; with at most 100
             amplitudes, not with `normal`. A number alone is its `points`. May have `points`.
@@ -186,8 +192,8 @@ class Computations(ABC):
         harmonics : int
             Ask for the harmonics from the first to this one.
         machine : Quantity | Machine | dict
-            A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
-            is its `stiffness`. Needs `stiffness`.
+            A machine in series with the contact: an amplitude of displacement or twist is then that of the machine. A
+            number alone is its `stiffness`. Needs `stiffness`.
         map : FrettingMap | dict
             Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
             options only `machine` is allowed. At most 100 000 cycles. Needs `normal_force`.
@@ -236,6 +242,8 @@ class Computations(ABC):
             "drive": {
                 "displacement": displacement,
                 "force": force,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer(results.CycleReply, "/cycle", given, parts)
@@ -343,6 +351,8 @@ class Computations(ABC):
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
@@ -409,6 +419,10 @@ class Computations(ABC):
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
             `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
+        twist : Quantities
+            Angles of twist, rad, one move each.
+        torque : Quantities
+            Torques, N·m, one move each.
         body : BodyName
             The body that is rated. If left out, the first body that is not rigid. One of 'first', 'second'.
         bulk : Quantity | BulkCycle | dict
@@ -497,6 +511,8 @@ class Computations(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer(results.FrettingReply, "/fretting", given, parts)
@@ -1206,6 +1222,8 @@ class AsyncComputations(ABC):
         displacement: Quantity | Quantities | None = None,
         *,
         force: Quantity | Quantities | None = None,
+        twist: Quantity | Quantities | None = None,
+        torque: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
         frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
@@ -1233,6 +1251,8 @@ class AsyncComputations(ABC):
             "drive": {
                 "displacement": displacement,
                 "force": force,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer(results.CycleReply, "/cycle", given, parts)
@@ -1280,6 +1300,8 @@ class AsyncComputations(ABC):
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
@@ -1327,6 +1349,8 @@ class AsyncComputations(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer(results.FrettingReply, "/fretting", given, parts)
@@ -1649,6 +1673,8 @@ class OfContact(ABC):
         relative: bool | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
         tolerance: Quantity | None = None,
+        torque: Quantity | None = None,
+        twist: Quantity | None = None,
     ) -> results.MoveReply:
         """Applies one move.
 
@@ -1673,6 +1699,12 @@ class OfContact(ABC):
             Ask for stresses after the move. A number alone is its `points`. May have `fields`, `points`, `radii`, `x`.
         tolerance : Quantity
             Tolerance of results that are not exact, relative to μ F_N, a pure number. Default: 1e-10.
+        torque : Quantity
+            Torque about the axis of the contact, N·m, in place of `twist`; its magnitude must stay below that of gross
+            slip.
+        twist : Quantity
+            Angle of twist about the axis of the contact, rad, since it last touched, in place of `displacement` or
+            `force`.
 
         Returns
         -------
@@ -1700,6 +1732,8 @@ class OfContact(ABC):
             "relative": relative,
             "stress": stress,
             "tolerance": tolerance,
+            "torque": torque,
+            "twist": twist,
         }
         parts: dict[str, Document] = {
         }
@@ -1715,6 +1749,8 @@ class OfContact(ABC):
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.Path | None = None,
         steps: types.Steps | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
@@ -1741,6 +1777,10 @@ class OfContact(ABC):
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
             `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
+        twist : Quantities
+            Angles of twist, rad, one move each.
+        torque : Quantities
+            Torques, N·m, one move each.
         path : Path
             The path.
         steps : Steps
@@ -1783,6 +1823,8 @@ class OfContact(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer_of_contact(results.PathReply, "path", given, parts)
@@ -1922,6 +1964,8 @@ class OfContact(ABC):
         displacement: Quantity | Quantities | None = None,
         *,
         force: Quantity | Quantities | None = None,
+        twist: Quantity | Quantities | None = None,
+        torque: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
         frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
@@ -1949,6 +1993,10 @@ class OfContact(ABC):
             Amplitude of the tangential displacement, m: of the indenter or, with `machine`, of the machine.
         force : Quantity | Quantities
             Amplitude of the tangential force, N; below μ F_N.
+        twist : Quantity | Quantities
+            Amplitude of the angle of twist, rad: of the indenter or, with `machine`, of the machine.
+        torque : Quantity | Quantities
+            Amplitude of the torque, N·m; below that of gross slip.
         best_load : int | bool | BestLoadStudy | dict
             Ask for the normal force under which each amplitude does the most friction work; with at most 100
             amplitudes, not with `normal`. A number alone is its `points`. May have `points`.
@@ -1963,8 +2011,8 @@ class OfContact(ABC):
         harmonics : int
             Ask for the harmonics from the first to this one.
         machine : Quantity | Machine | dict
-            A machine in series with the contact: a displacement amplitude is then that of the machine. A number alone
-            is its `stiffness`. Needs `stiffness`.
+            A machine in series with the contact: an amplitude of displacement or twist is then that of the machine. A
+            number alone is its `stiffness`. Needs `stiffness`.
         map : FrettingMap | dict
             Repeat all amplitudes under many loads, whatever the preload of the contact: a fretting map. Of the other
             options only `machine` is allowed. At most 100 000 cycles. Needs `normal_force`.
@@ -2009,6 +2057,8 @@ class OfContact(ABC):
             "drive": {
                 "displacement": displacement,
                 "force": force,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer_of_contact(results.CycleReply, "cycle", given, parts)
@@ -2030,6 +2080,8 @@ class OfContact(ABC):
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
@@ -2094,6 +2146,10 @@ class OfContact(ABC):
         cycles : CyclicPath | dict
             Equal cycles about a mean, under a constant load or one that oscillates too. Needs `count`; may have
             `displacement`, `force`, `mean`, `normal`, `points_per_cycle`, `start`.
+        twist : Quantities
+            Angles of twist, rad, one move each.
+        torque : Quantities
+            Torques, N·m, one move each.
         body : BodyName
             The body that is rated. If left out, the first body that is not rigid. One of 'first', 'second'.
         bulk : Quantity | BulkCycle | dict
@@ -2172,6 +2228,8 @@ class OfContact(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return self._answer_of_contact(results.FrettingReply, "fretting", given, parts)
@@ -2253,6 +2311,8 @@ class AsyncOfContact(ABC):
         relative: bool | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
         tolerance: Quantity | None = None,
+        torque: Quantity | None = None,
+        twist: Quantity | None = None,
     ) -> results.MoveReply:
         """`move`, awaited."""
         given: Document = {
@@ -2264,6 +2324,8 @@ class AsyncOfContact(ABC):
             "relative": relative,
             "stress": stress,
             "tolerance": tolerance,
+            "torque": torque,
+            "twist": twist,
         }
         parts: dict[str, Document] = {
         }
@@ -2279,6 +2341,8 @@ class AsyncOfContact(ABC):
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         path: types.Path | None = None,
         steps: types.Steps | None = None,
         stress: int | types.StressRequest | Mapping[str, Any] | None = None,
@@ -2300,6 +2364,8 @@ class AsyncOfContact(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer_of_contact(results.PathReply, "path", given, parts)
@@ -2359,6 +2425,8 @@ class AsyncOfContact(ABC):
         displacement: Quantity | Quantities | None = None,
         *,
         force: Quantity | Quantities | None = None,
+        twist: Quantity | Quantities | None = None,
+        torque: Quantity | Quantities | None = None,
         best_load: int | bool | types.BestLoadStudy | Mapping[str, Any] | None = None,
         frequency: Quantity | Quantities | None = None,
         frequency_response: types.FrequencyResponse | Mapping[str, Any] | None = None,
@@ -2385,6 +2453,8 @@ class AsyncOfContact(ABC):
             "drive": {
                 "displacement": displacement,
                 "force": force,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer_of_contact(results.CycleReply, "cycle", given, parts)
@@ -2406,6 +2476,8 @@ class AsyncOfContact(ABC):
         falling_amplitude: int | types.FallingAmplitude | Mapping[str, Any] | None = None,
         equal_peaks: int | types.EqualPeaks | Mapping[str, Any] | None = None,
         cycles: types.CyclicPath | Mapping[str, Any] | None = None,
+        twist: Quantities | None = None,
+        torque: Quantities | None = None,
         body: types.BodyName | None = None,
         bulk: Quantity | types.BulkCycle | Mapping[str, Any] | None = None,
         criteria: bool | types.Criteria | Mapping[str, Any] | None = None,
@@ -2452,6 +2524,8 @@ class AsyncOfContact(ABC):
                 "falling_amplitude": falling_amplitude,
                 "equal_peaks": equal_peaks,
                 "cycles": cycles,
+                "twist": twist,
+                "torque": torque,
             },
         }
         return await self._answer_of_contact(results.FrettingReply, "fretting", given, parts)

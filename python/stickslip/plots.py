@@ -30,6 +30,7 @@ STRESSES = (
 )
 #: The axes of a loop.
 LOOP = (DISPLACEMENT, FORCE)
+TWIST: tuple[Said, Said] = ("angle of twist ω", "rad"), ("torque M", "N·m")
 BOUND = "friction bound ±μp"
 
 
@@ -126,15 +127,10 @@ def _path(ax: Axes, result: Any, ends: tuple[Any, Any], said: tuple[Said, Said],
     _axes(ax, *said)
 
 
-def _loop(ax: Axes, result: Any, **options: Any) -> None:
-    _path(ax, result, (result.displacement, result.force), LOOP, **options)
-
-
 def _simulation(ax: Axes, result: Any, **options: Any) -> None:
     steps = result.steps
     if any("twist" in row for row in steps._documents):
-        said: tuple[Said, Said] = ("angle of twist ω", "rad"), ("torque M", "N·m")
-        _path(ax, result, (steps.twist, steps.torque), said, **options)
+        _path(ax, result, (steps.twist, steps.torque), TWIST, **options)
         return
     _path(ax, result, (steps.displacement, steps.force), LOOP, **options)
 
@@ -142,7 +138,9 @@ def _simulation(ax: Axes, result: Any, **options: Any) -> None:
 def _recorded(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = result.table()
     is_end = columns.get("part", np.ones(len(columns["force"]))) == 1.0
-    _path(ax, result, (columns["displacement"][is_end], columns["force"][is_end]), LOOP, **options)
+    is_twisted = np.isfinite(columns.get("twist", [])).any()
+    x, y, said = ("twist", "torque", TWIST) if is_twisted else ("displacement", "force", LOOP)
+    _path(ax, result, (columns[x][is_end], columns[y][is_end]), said, **options)
 
 
 def _closed(ax: Axes, result: Any, **options: Any) -> None:
@@ -152,7 +150,10 @@ def _closed(ax: Axes, result: Any, **options: Any) -> None:
 
 def _cycle(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = result.table()
-    amplitude, work = columns["displacement_amplitude"], columns["dissipated_energy"]
+    is_twist = "twist_amplitude" in columns
+    x: Said = ("angle amplitude", "rad") if is_twist else ("displacement amplitude", "m")
+    amplitude = columns["twist_amplitude" if is_twist else "displacement_amplitude"]
+    work = columns["dissipated_energy"]
     said: Said = ("friction work of a cycle", "J")
     if "frequency" in columns:
         for one in np.unique(amplitude):
@@ -172,7 +173,7 @@ def _cycle(ax: Axes, result: Any, **options: Any) -> None:
         _axes(ax, ("normal force", "N"), ("displacement amplitude", "m"), xscale="log", yscale="log")
         return
     ax.plot(amplitude, work, **({"linestyle": "none", "marker": "o"} | options))
-    _axes(ax, ("displacement amplitude", "m"), said, xscale="log", yscale="log")
+    _axes(ax, x, said, xscale="log", yscale="log")
 
 
 def _over_places(ax: Axes, places: tuple[Any, Any, Any], values: Any, said: Said, **options: Any) -> None:
@@ -281,7 +282,7 @@ _PAINTERS: dict[str, Callable[..., None]] = {
     "FrettingReply": _fretting,
     "HistoryPage": _recorded,
     "LoopPage": _recorded,
-    "PathReply": _loop,
+    "PathReply": _simulation,
     "PlanarReply": _force_in_plane,
     "ProfileFitReply": _scan,
     "ProtocolReply": _protocol,

@@ -192,6 +192,20 @@ class CycleDriveForce(TypedDict):
     """Amplitude of the tangential force, N; below μ F_N."""
 
 
+class CycleDriveTwist(TypedDict):
+    """Amplitude of the angle of twist, rad: of the indenter or, with `machine`, of the machine."""
+
+    twist: Quantity | Quantities
+    """Amplitude of the angle of twist, rad: of the indenter or, with `machine`, of the machine."""
+
+
+class CycleDriveTorque(TypedDict):
+    """Amplitude of the torque, N·m; below that of gross slip."""
+
+    torque: Quantity | Quantities
+    """Amplitude of the torque, N·m; below that of gross slip."""
+
+
 class _CyclicPathNeeded(TypedDict):
     count: int
 
@@ -385,7 +399,7 @@ class Machine(TypedDict):
     """A machine in series with the contact."""
 
     stiffness: Quantity
-    """Its stiffness, N/m."""
+    """Its stiffness, N/m; with `twist` or `torque` N·m/rad."""
 
 
 class MapScan(TypedDict):
@@ -423,9 +437,9 @@ class MeasuredLoop(_MeasuredLoopNeeded, total=False):
 class Move(TypedDict, total=False):
     """One move, straight to its targets.
 
-    At most one tangential target (`displacement` or `force`) and one normal target (`indentation` or
-    `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement stays,
-    without a normal one the indentation stays.
+    At most one tangential target (`displacement`, `force`, `twist` or `torque`) and one normal target
+    (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target displacement
+    and twist stay, without a normal one the indentation stays.
     """
 
     displacement: Quantity
@@ -442,6 +456,13 @@ class Move(TypedDict, total=False):
     """Normal force, N; below zero, if it is no increment, only with `adhesion`."""
     relative: bool
     """Whether the numbers are increments to the present state, instead of the targets themselves."""
+    torque: Quantity
+    """Torque about the axis of the contact, N·m, in place of `twist`; its magnitude must stay below that of gross
+    slip.
+    """
+    twist: Quantity
+    """Angle of twist about the axis of the contact, rad, since it last touched, in place of `displacement` or `force`.
+    """
 
 
 class NamedOutput(TypedDict):
@@ -562,6 +583,20 @@ class PathCycles(_PathCyclesNeeded, total=False):
 
     duration: Quantity
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
+
+
+class PathTwist(TypedDict):
+    """Angles of twist, rad, one move each."""
+
+    twist: Quantities
+    """Angles of twist, rad, one move each."""
+
+
+class PathTorque(TypedDict):
+    """Torques, N·m, one move each."""
+
+    torque: Quantities
+    """Torques, N·m, one move each."""
 
 
 class PointScan(TypedDict):
@@ -690,9 +725,9 @@ class ScanUnits(TypedDict, total=False):
 class SimulatedMove(TypedDict, total=False):
     """One move, straight to its targets.
 
-    At most one tangential target (`displacement` or `force`) and one normal target (`indentation` or
-    `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement stays,
-    without a normal one the indentation stays. A pair [x, y] is a target in the plane.
+    At most one tangential target (`displacement`, `force`, `twist` or `torque`) and one normal target
+    (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target displacement
+    and twist stay, without a normal one the indentation stays. A pair [x, y] is a target in the plane.
     """
 
     displacement: Components
@@ -1099,6 +1134,8 @@ Components: TypeAlias = Union[
 CycleDrive: TypeAlias = Union[
     "CycleDriveDisplacement",
     "CycleDriveForce",
+    "CycleDriveTwist",
+    "CycleDriveTorque",
     "Mapping[str, Any]",
 ]
 """What is prescribed as a cosine, one key: its amplitude, or a list of amplitudes with a cycle for each."""
@@ -1112,6 +1149,8 @@ Path: TypeAlias = Union[
     "PathDuration",
     "PathDisplacement",
     "PathCycles",
+    "PathTwist",
+    "PathTorque",
     "Mapping[str, Any]",
 ]
 """A path, one key: a list of moves, or a short form of one."""

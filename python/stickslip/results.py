@@ -40,7 +40,9 @@ class Accuracy(Result):
     """
 
     count: int | None
-    """Number of rings of the solver in the plane, or of springs across the radius of bodies with memory."""
+    """Number of rings of the solver in the plane, or of springs across the radius, of bodies with memory or of a twist
+    under a load that changes.
+    """
 
     coupling_bound: float | None
     """How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure
@@ -49,7 +51,8 @@ class Accuracy(Result):
     """
 
     steps: int | None
-    """Number of steps on the whole path in the finest discretisation of rings, or of springs with memory."""
+    """Number of steps on the whole path in the finest discretisation of rings, or of springs with memory or of twist.
+    """
 
     subsurface_error: float | None
     """Estimated error of the stress below the surface, relative to the largest pressure (or to the mean), a pure
@@ -179,7 +182,7 @@ class CycleReply(Result):
 
         @property
         def displacement_amplitude(self) -> Floats:
-            """Of each row: Amplitude of the displacement of the indenter, m."""
+            """Of each row: Amplitude of the displacement of the indenter, m; left out where the contact is twisted."""
 
         @property
         def dissipated_energy(self) -> Floats:
@@ -189,7 +192,7 @@ class CycleReply(Result):
 
         @property
         def force_amplitude(self) -> Floats:
-            """Of each row: Amplitude of the tangential force, N."""
+            """Of each row: Amplitude of the tangential force, N; left out where the contact is twisted."""
 
         @property
         def frequency(self) -> Floats:
@@ -215,7 +218,8 @@ class CycleReply(Result):
 
         @property
         def machine_amplitude(self) -> Floats:
-            """Of each row: Amplitude of the displacement at the machine, m; only with `machine`."""
+            """Of each row: Amplitude of the displacement at the machine, m, or of its angle, rad; only with `machine`.
+            """
 
         @property
         def max_elastic_energy(self) -> Floats:
@@ -233,8 +237,8 @@ class CycleReply(Result):
 
         @property
         def secant_stiffness(self) -> Floats:
-            """Of each row: Force amplitude over displacement amplitude of the indenter, N/m; at zero amplitude the
-            tangent stiffness.
+            """Of each row: Force amplitude over displacement amplitude of the indenter, N/m, or torque over angle,
+            N·m/rad; at zero amplitude the tangent stiffness.
             """
 
         @property
@@ -251,7 +255,18 @@ class CycleReply(Result):
 
         @property
         def tangent_stiffness(self) -> Floats:
-            """Of each row: Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction."""
+            """Of each row: Stiffness of the contact just after a reversal, 2 G* a, N/m, under twist (16/3) G a³,
+            N·m/rad; zero without friction.
+            """
+
+        @property
+        def torque_amplitude(self) -> Floats:
+            """Of each row: Amplitude of the torque, N·m, where `twist` or `torque` is driven."""
+
+        @property
+        def twist_amplitude(self) -> Floats:
+            """Of each row: Amplitude of the angle of twist of the indenter, rad, where `twist` or `torque` is driven.
+            """
 
         @property
         def viscous_work(self) -> Floats:
@@ -290,7 +305,7 @@ class Figures(Result):
     """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
 
     gross_slip_torque: float | None
-    """Torque at gross slip, N·m; only where the path twists the contact."""
+    """Torque at gross slip, N·m; where the path twists the contact, and of a load curve."""
 
     max_pressure: float | None
     """Largest pressure, Pa; `null` where it is infinite, and for a profile without a stress field."""
@@ -446,10 +461,10 @@ class LoopPage(Result):
     """
 
     displacement: Floats
-    """Tangential displacement U of the indenter, m; positive along x."""
+    """Tangential displacement U of the indenter, m; positive along x; `null` while the contact is twisted."""
 
     force: Floats
-    """Tangential force F_x, N."""
+    """Tangential force F_x, N; `null` while the contact is twisted."""
 
     part: Floats
     """Fraction of that move at the point, a pure number: 1 at its end."""
@@ -464,6 +479,12 @@ class LoopPage(Result):
     """Force that was measured at each point, N, `null` where none was measured; left out if the page has no measured
     force.
     """
+
+    torque: Floats | None
+    """Torque, N·m, as `twist`."""
+
+    twist: Floats | None
+    """Angle of twist, rad, `null` while the contact is not twisted; left out if the page has no twist."""
 
 
 class MoveReply(Result):
@@ -564,7 +585,9 @@ class PathReply(Result):
 
         @property
         def displacement(self) -> Floats:
-            """Of each row: Tangential displacement U of the indenter, m; positive along x."""
+            """Of each row: Tangential displacement U of the indenter, m; positive along x. Left out from the first
+            twist until the contact lifts off.
+            """
 
         @property
         def dissipated_energy(self) -> Floats:
@@ -582,7 +605,9 @@ class PathReply(Result):
 
         @property
         def force(self) -> Floats:
-            """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
+            """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact. Left out
+            as `displacement`.
+            """
 
         @property
         def indentation(self) -> Floats:
@@ -624,12 +649,12 @@ class PathReply(Result):
 
         @property
         def torque(self) -> Floats:
-            """Of each row: Torque, N·m, from then on."""
+            """Of each row: Torque, N·m, in place of `force`."""
 
         @property
         def twist(self) -> Floats:
-            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
-            `force` then stay.
+            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off, in place of
+            `displacement`.
             """
 
         @property
@@ -984,12 +1009,12 @@ class RelaxReply(Result):
 
         @property
         def torque(self) -> Floats:
-            """Of each row: Torque, N·m, from then on."""
+            """Of each row: Torque, N·m, in place of `force`."""
 
         @property
         def twist(self) -> Floats:
-            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
-            `force` then stay.
+            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off, in place of
+            `displacement`.
             """
 
         @property
@@ -1164,7 +1189,9 @@ class SimulateReply(Result):
 
         @property
         def displacement(self) -> Floats:
-            """Of each row: Tangential displacement U of the indenter, m; positive along x."""
+            """Of each row: Tangential displacement U of the indenter, m; positive along x. Left out from the first
+            twist until the contact lifts off.
+            """
 
         @property
         def dissipated_energy(self) -> Floats:
@@ -1182,7 +1209,9 @@ class SimulateReply(Result):
 
         @property
         def force(self) -> Floats:
-            """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
+            """Of each row: Tangential force F_x, N; positive for a positive displacement of a virgin contact. Left out
+            as `displacement`.
+            """
 
         @property
         def indentation(self) -> Floats:
@@ -1224,12 +1253,12 @@ class SimulateReply(Result):
 
         @property
         def torque(self) -> Floats:
-            """Of each row: Torque, N·m, from then on."""
+            """Of each row: Torque, N·m, in place of `force`."""
 
         @property
         def twist(self) -> Floats:
-            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and
-            `force` then stay.
+            """Of each row: Angle of twist, rad, from the first twist until the contact lifts off, in place of
+            `displacement`.
             """
 
         @property
@@ -1281,17 +1310,11 @@ class State(Result):
     contact_radius: float
     """Contact radius a, m; for a line contact the half-width; for a profile without a stress field F_N′/(2 E*)."""
 
-    displacement: float
-    """Tangential displacement U of the indenter, m; positive along x."""
-
     dissipated_energy: float
     """Work dissipated by friction since the start, J; never falls."""
 
     elastic_energy: float
     """Energy stored in the tangential deformation, J."""
-
-    force: float
-    """Tangential force F_x, N; positive for a positive displacement of a virgin contact."""
 
     indentation: float
     """Indentation d, m; positive when pressed in, below zero the bodies are apart."""
@@ -1315,8 +1338,16 @@ class State(Result):
     stored moves of a contact.
     """
 
+    displacement: float | None
+    """Tangential displacement U of the indenter, m; positive along x. Left out from the first twist until the contact
+    lifts off.
+    """
+
     electrical_conductance: float | None
     """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
+
+    force: float | None
+    """Tangential force F_x, N; positive for a positive displacement of a virgin contact. Left out as `displacement`."""
 
     stick_centre: float | None
     """Middle of the stick zone along x, m; only with a bulk stress that shifts it."""
@@ -1331,10 +1362,10 @@ class State(Result):
     """Time since the preload, s, if the bodies have `prony`."""
 
     torque: float | None
-    """Torque, N·m, from then on."""
+    """Torque, N·m, in place of `force`."""
 
     twist: float | None
-    """Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay."""
+    """Angle of twist, rad, from the first twist until the contact lifts off, in place of `displacement`."""
 
     viscous_work: float | None
     """Work of the tangential force that the bodies have dissipated by their memory since the start, J, if they have

@@ -300,6 +300,8 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "observed_force": ("[]", "N"),
         "part": ("[]", "1"),
         "sequence": ("#", "1"),
+        "torque": ("[]", "N·m"),
+        "twist": ("[]", "rad"),
     },
     "MapInFile": {
         "dx": ("", None),
@@ -676,6 +678,8 @@ FIELDS: dict[str, dict[str, tuple[str, str | None]]] = {
         "sliding_ratio": ("", "1"),
         "stick_radius": ("", "m"),
         "tangent_stiffness": ("", "N/m"),
+        "torque_amplitude": ("", "N·m"),
+        "twist_amplitude": ("", "rad"),
         "viscous_work": ("", "J"),
     },
     "Stress": {

@@ -7,16 +7,20 @@ use stickslip_mechanics::unit_prefix;
 const INDENT: usize = 2;
 const NAMES: usize = 34;
 /// Columns that a table of rows begins with, those of the most interest first; the others follow by their names.
-const FIRST: [&str; 12] = [
+const FIRST: [&str; 16] = [
     "time",
     "frequency",
     "displacement",
     "force",
+    "twist",
+    "torque",
     "stick_radius",
     "regime",
     "dissipated_energy",
     "displacement_amplitude",
     "force_amplitude",
+    "twist_amplitude",
+    "torque_amplitude",
     "secant_stiffness",
     "loss_factor",
     "radius",

@@ -4,6 +4,7 @@ import { FIELDS, contactView } from "./contact_view.js";
 import { latestOnly, notice, debounce } from "./dom.js";
 import { WITHOUT_STRESS } from "./form_options.js";
 import { isLine } from "./line_contact.js";
+import { alongOf, isTwisted } from "./state_text.js";
 
 /** Moves that are drawn of a long history, and moves and points of the loop that the service draws between their
  *  states. */
@@ -70,7 +71,7 @@ export async function showContact(main, { id, tab }, signal, ready) {
   };
   const loadStress = latestOnly(async () => {
     if (!model.hasStress) return;
-    model.stress = await call("GET", `/contacts/${id}/stress?${FIELDS}`, undefined, signal);
+    model.stress = await stressOf(model);
     redraw();
   });
   const loadFriction = latestOnly(async () => {
@@ -84,7 +85,10 @@ export async function showContact(main, { id, tab }, signal, ready) {
     const points = Math.max(MIN_POINTS_OF_A_MOVE, Math.min(MAX_POINTS_OF_A_MOVE, fitting));
     const query = `last=${MAX_LOOP}&points_per_move=${points}`;
     const page = await call("GET", `/contacts/${id}/loop?${query}`, undefined, signal);
-    const curved = page.sequence.map((sequence, index) => [page.displacement[index], page.force[index], sequence]);
+    const [x, y] = isTwisted(model.state) ? [page.twist, page.torque] : [page.displacement, page.force];
+    const curved = page.sequence
+      .map((sequence, index) => [x?.[index] ?? null, y?.[index] ?? null, sequence])
+      .filter(([place]) => place !== null);
     const isDrawn = (sequence) => sequence >= page.sequence[0] && sequence <= page.sequence.at(-1);
     const straight = straightPath(model).filter(([, , sequence]) => !isDrawn(sequence));
     model.path = [...straight, ...curved].sort((one, two) => one[2] - two[2]);
@@ -103,10 +107,13 @@ export async function showContact(main, { id, tab }, signal, ready) {
 
   const addMove = (event) => {
     if (event.sequence <= (history.at(-1)?.sequence ?? model.first.sequence)) return;
+    // What a twist and a shift have led through has no axis in common.
+    const isOther = isTwisted(event.state) !== isTwisted(model.state);
     model.state = event.state;
     const { sequence, move, state, observation, at } = event;
     history.push({ sequence, move: move ?? {}, state, observation, at });
-    model.path.push([event.state.displacement, event.state.force, event.sequence]);
+    if (isOther) model.path = straightPath(model);
+    else model.path.push([...alongOf(event.state), event.sequence]);
     if (history.length > 2 * MAX_HISTORY) {
       model.first = history[history.length - MAX_HISTORY - 1];
       history.splice(0, history.length - MAX_HISTORY);
@@ -127,6 +134,19 @@ export async function showContact(main, { id, tab }, signal, ready) {
   return view;
 }
 
-/** The path of a contact from state to state: `[displacement, force, sequence]`. */
-const straightPath = ({ first, history }) =>
-  [first, ...history].map(({ state, sequence }) => [state.displacement, state.force, sequence]);
+/** The path of a contact from state to state, of the states that are twisted as the present one is or is not: what
+ *  `alongOf` has, and the sequence. */
+const straightPath = ({ first, history, state: now }) =>
+  [first, ...history]
+    .filter(({ state }) => isTwisted(state) === isTwisted(now))
+    .map(({ state, sequence }) => [...alongOf(state), sequence]);
+
+/** The stresses of a contact; of one that is twisted its hoop stress stands for the shear stress. */
+async function stressOf({ id, signal, state }) {
+  const ask = (fields) => call("GET", `/contacts/${id}/stress?${fields}`, undefined, signal);
+  if (!isTwisted(state)) return ask(FIELDS);
+  const found = await ask("points=300&fields=pressure,hoop");
+  const max = found.hoop.reduce((most, value) => Math.max(most, Math.abs(value ?? 0)), 0);
+  const none = found.hoop.map(() => null);
+  return { ...found, shear: found.hoop, slip: none, residual: { peaks: [], max, relative: null } };
+}

@@ -4,6 +4,7 @@ import { Chart } from "./chart.js";
 import { columnsOf } from "./chart_menu.js";
 import { isLine, meanPressure, peaksOf, placesOf, zonesOf } from "./line_contact.js";
 import { sideView } from "./side_view.js";
+import { alongOf, isTwisted } from "./state_text.js";
 import { topView } from "./top_view.js";
 import { formatQuantity } from "./units.js";
 
@@ -48,6 +49,9 @@ export function contactPlots({ hasStress, definition }) {
   view.onhover = (hit) => stress.showCursor(hit && atPlace(stress, hit.ring ?? hit.x));
 
   const draw = (model, overlay) => {
+    const twists = isTwisted(model.state);
+    [loop.x.label, loop.x.unit] = twists ? ["Angle of twist ω", "rad"] : ["Displacement U", "m"];
+    [loop.y.label, loop.y.unit] = twists ? ["Torque M", "N·m"] : ["Force F", "N"];
     const data = loopData(model, overlay.loop());
     loop.draw(data);
     if (model.stress) {
@@ -112,6 +116,7 @@ function recentPart(points, first, history) {
 export function rememberedTurns(first, history) {
   const states = [first, ...history].map(({ state }) => state);
   if (first.sequence > 0 || states.some((state) => state.indentation !== first.state.indentation)) return [];
+  if (states.some(isTwisted)) return [];
   const turns = [];
   let [direction, outer] = [0, 2];
   for (const [index, state] of states.entries()) {
@@ -132,9 +137,10 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   const direction = (index) => Math.sign(path[index][0] - path[index - 1][0]);
   while (turn > 1 && (direction(turn) === 0 || direction(turn - 1) === 0 || direction(turn) === direction(turn - 1)))
     turn -= 1;
-  const limit = friction * state.normal_force;
+  const twists = isTwisted(state);
+  const limit = twists ? 0 : friction * state.normal_force;
   const measured = history
-    .filter(({ observation }) => observation)
+    .filter(({ observation }) => observation && !twists)
     .map(({ sequence, state: s, observation }) => [s.displacement, observation.force, sequence]);
   const least = limit > 0 ? { x: [-slip(state), slip(state)], y: [-limit, limit] } : {};
   // What is far beyond slip has to be wide beside the least range, too.
@@ -160,7 +166,7 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
         : [],
     marks: [
       ...rememberedTurns(first, history).map(({ displacement: x, force: y }) => ({ x, y, class: "turn", size: 4.5 })),
-      { x: state.displacement, y: state.force, class: state.regime },
+      { x: alongOf(state)[0], y: alongOf(state)[1], class: state.regime },
     ],
     table: () => {
       const moves = history.map(({ sequence, state: s, observation }) => ({
@@ -172,6 +178,7 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
         sequence: "sequence",
         displacement_m: "displacement",
         force_n: "force",
+        ...(twists ? { twist_rad: "twist", torque_nm: "torque" } : {}),
         normal_force_n: "normal_force",
         indentation_m: "indentation",
         stick_radius_m: "stick_radius",

@@ -23,7 +23,7 @@ const MOST_MOVES = 200;
 /** The choice of the path, and what belongs to it. */
 function pathFields(form, model) {
   const slip = model.figures.gross_slip_displacement;
-  const usual = Math.abs(model.state.displacement) || 0.5 * slip || 1e-7;
+  const usual = Math.abs(model.state.displacement ?? 0) || 0.5 * slip || 1e-7;
   const [unit, power] = LENGTH.findLast(([, one]) => one >= powerOf(usual)) ?? LENGTH.at(-1);
   const canRepeat = model.isComplete && model.history.length > 0 && model.history.length <= MOST_MOVES;
   const kind = new Choice(form, () => "/path", "The cycle", {

@@ -24,12 +24,12 @@ async function isMeant(model, displacement) {
 /** The card, the choices of units, and a function that shows a state. */
 export function moveHands(model) {
   const { figures } = model;
-  const reach = (state) => Math.max(model.reach(state), Math.abs(state.displacement));
+  const reach = (state) => Math.max(model.reach(state), Math.abs(state.displacement ?? 0));
   const displacement = moveControl({
     name: "displacement",
     label: "Displacement U",
     unit: "m",
-    value: (state) => state.displacement,
+    value: (state) => state.displacement ?? 0,
     limits: (state) => [-reach(state), reach(state)],
     send: async (wanted) => {
       if (Math.abs(wanted) > reach(model.state) && !(await isMeant(model, wanted))) throw new Error("Not sent.");
@@ -40,7 +40,7 @@ export function moveHands(model) {
     name: "force",
     label: "Tangential force F",
     unit: "N",
-    value: (state) => state.force,
+    value: (state) => state.force ?? 0,
     limits: (state) => {
       const limit = 0.999 * model.friction * state.normal_force || 1;
       return [-limit, limit];

@@ -72,6 +72,12 @@ export function conductanceFigures({ electrical_conductance: electrical, thermal
   ];
 }
 
+/** Whether a state is of a contact that is twisted. */
+export const isTwisted = ({ twist }) => twist !== undefined;
+
+/** What a contact is moved to along its surface, and what that takes: angle and torque of one that is twisted. */
+export const alongOf = (state) => (isTwisted(state) ? [state.twist, state.torque] : [state.displacement, state.force]);
+
 /** Lines about a state. */
 export function stateText(state, { friction, history, first, measured, stress, isLine }) {
   const limit = friction * state.normal_force;
@@ -79,17 +85,26 @@ export function stateText(state, { friction, history, first, measured, stress, i
   return [
     el("p", { class: `regime ${regimeOf(state)}` }, NAMES[regimeOf(state)]),
     el("p", {}, sentence(state, history.length > 0 || first.sequence > 0, isLine)),
-    el(
-      "p",
-      { class: "meter" },
-      el("meter", { min: 0, max: 1, value: use, "aria-label": "Share of the friction limit" }),
-      el("span", {}, withSubscripts(`${formatNumber(100 * use, 3)} % of the friction limit μ F_N`)),
-    ),
+    isTwisted(state)
+      ? ""
+      : el(
+          "p",
+          { class: "meter" },
+          el("meter", { min: 0, max: 1, value: use, "aria-label": "Share of the friction limit" }),
+          el("span", {}, withSubscripts(`${formatNumber(100 * use, 3)} % of the friction limit μ F_N`)),
+        ),
     el(
       "dl",
       { class: "figures" },
-      figure("Displacement U", `${formatQuantity(state.displacement, "m")}`),
-      figure("Force F", `${formatQuantity(state.force, "N")}`),
+      ...(isTwisted(state)
+        ? [
+            figure("Angle ω", formatQuantity(state.twist, "rad")),
+            figure("Torque M", formatQuantity(state.torque, "N·m")),
+          ]
+        : [
+            figure("Displacement U", formatQuantity(state.displacement, "m")),
+            figure("Force F", formatQuantity(state.force, "N")),
+          ]),
       figure("Load F_N", `${formatQuantity(state.normal_force, "N")}`),
       figure(isLine ? "Half-width a" : "Contact radius a", `${formatQuantity(state.contact_radius, "m")}`),
       ...(state.stick_centre && state.stick_radius > 0

@@ -8,7 +8,7 @@ import { formatNumber, formatQuantity } from "./units.js";
 const REST = 120;
 
 /** The amplitude that the slider stands at, m. */
-export const amplitudeOf = (state) => Math.abs(state.displacement);
+export const amplitudeOf = (state) => Math.abs(state.displacement ?? 0);
 
 function sentence({ regime, stick_radius: c }, { contact_radius: a }, isLine) {
   if (regime === "stick") return "Back and forth, nothing slips, and no work is lost.";
@@ -52,7 +52,7 @@ export function steadyCard(model) {
   const show = (state) =>
     follow(`${amplitudeOf(state)} ${state.indentation}`, () => {
       if (!(state.normal_force > 0)) say("Without a load there is no friction: press the bodies together.");
-      else if (state.displacement === 0) say("Pull the displacement: its distance from zero is the amplitude.");
+      else if (amplitudeOf(state) === 0) say("Pull the displacement: its distance from zero is the amplitude.");
       else return state;
     });
   const element = el(

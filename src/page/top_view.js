@@ -3,9 +3,14 @@ import { nearestIndex } from "./axis.js";
 import { Chart } from "./chart.js";
 import { svg } from "./dom.js";
 import { meanPressure } from "./line_contact.js";
+import { isTwisted } from "./state_text.js";
 import { formatNumber, formatQuantity, unitScale } from "./units.js";
 
 const STOPS = 160;
+
+const note = (plus, minus) =>
+  `Colour is the shear stress on the contact, green ${plus} and purple ${minus}, on a scale up to the largest value in ` +
+  "the contact; in the striped ring the last move slipped.";
 
 /** The plot. */
 export function topView() {
@@ -17,9 +22,7 @@ export function topView() {
     height: 340,
     x: { label: "x, along the motion", unit: "m" },
     y: { label: "y", unit: "m" },
-    note:
-      "Colour is the shear stress on the contact, green towards +x and purple towards −x, on a scale up to the " +
-      "largest value in the contact; in the striped ring the last move slipped.",
+    note: note("towards +x", "towards −x"),
   });
   let stress = null;
   let radius = 0;
@@ -33,6 +36,8 @@ export function topView() {
     stress = model.stress;
     radius = model.state.contact_radius;
     const half = (radius || 1e-6) * 1.12;
+    const ways = isTwisted(model.state) ? ["anticlockwise", "clockwise"] : ["towards +x", "towards −x"];
+    chart.note.textContent = note(...ways);
     const points = stress.radius.map((r, index) => [r, stress.shear[index]]);
     chart.draw({
       series: [{ name: "shear stress τ", points, kind: "none", line: false }],
@@ -47,7 +52,9 @@ export function topView() {
 /** What a contact carries at one of the places of a reply, as lines of text. */
 export function valuesAt(stress, index) {
   const value = (name, unit) => formatQuantity(stress[name][index], unit);
-  return [`shear τ ${value("shear", "Pa")}`, `pressure p ${value("pressure", "Pa")}`, `slip ${value("slip", "m")}`];
+  // That of a contact that is twisted is not computed.
+  const slip = stress.slip[index] === null ? [] : [`slip ${value("slip", "m")}`];
+  return [`shear τ ${value("shear", "Pa")}`, `pressure p ${value("pressure", "Pa")}`, ...slip];
 }
 
 /** The colour of a stress between −1 and 1; small ones show too. */

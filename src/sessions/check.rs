@@ -253,12 +253,14 @@ impl Check<'_> {
 }
 
 /// How many numbers a state has.
-const QUANTITIES: usize = 8;
+const QUANTITIES: usize = 10;
 
 fn quantities(state: &State) -> [(&'static str, f64); QUANTITIES] {
     [
-        ("displacement", state.displacement),
-        ("force", state.force),
+        ("displacement", state.displacement.unwrap_or_default()),
+        ("force", state.force.unwrap_or_default()),
+        ("twist", state.twist.unwrap_or_default()),
+        ("torque", state.torque.unwrap_or_default()),
         ("indentation", state.indentation),
         ("normal force", state.normal_force),
         ("contact radius", state.contact_radius),

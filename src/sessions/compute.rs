@@ -5,7 +5,7 @@ use jiff::Timestamp;
 use crate::store::{Measured, Record, Reply};
 use stickslip_compute::computations::{Moved, OnContact as _, make_moves, shown_states};
 use stickslip_compute::simulation::bytes::{of_moves, of_records, of_stress};
-use stickslip_compute::simulation::cost::{MEMORY_MOVE_COST, Work};
+use stickslip_compute::simulation::cost::{self, MEMORY_MOVE_COST, Work};
 use stickslip_wire::session::Advance;
 use stickslip_wire::{MoveReply, Observation, PathReply, Plan, RelaxReply, State, Steps, limits};
 
@@ -61,7 +61,9 @@ pub(super) async fn compute(
     let sought = advance.relax.map_or(0, |relax| relax.task.cost(profile, depth));
     let work = Work { moves, curved, depth, radii, residual: false };
     let steps = if live.contact.has_memory() { moves as u64 * MEMORY_MOVE_COST } else { 0 };
-    let cost = work.cost(profile).saturating_add(sought).saturating_add(steps);
+    let twists = advance.plan.twists() || live.contact.is_twisted();
+    let twisted = if twists { cost::of_twist(moves) } else { 0 };
+    let cost = work.cost(profile).saturating_add(sought).saturating_add(steps).saturating_add(twisted);
     let solve = {
         let (advance, by, stop) = (Arc::clone(advance), sessions.by.clone(), stop.clone());
         move || {

@@ -168,7 +168,7 @@ impl Sessions {
         let items = records.iter().filter_map(|record| {
             let observed = record.observation()?;
             Some(ObservedMove {
-                displacement: record.state.displacement,
+                displacement: record.state.displacement.unwrap_or_default(),
                 force: observed.force,
                 predicted: observed.predicted,
                 innovation: observed.innovation,
@@ -189,5 +189,6 @@ fn bytes_of_fit(sequence: u64) -> usize {
 /// Adds a move to a cycle; returns whether it is an observation under the same load as those before.
 fn add(cycle: &mut MeasuredCycle, record: &store::Record) -> bool {
     let (state, Some(measured)) = (&record.state, record.measured) else { return false };
-    cycle.push(state.displacement, measured.force, (state.indentation, state.normal_force))
+    let Some(displacement) = state.displacement else { return false };
+    cycle.push(displacement, measured.force, (state.indentation, state.normal_force))
 }

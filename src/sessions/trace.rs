@@ -101,8 +101,7 @@ fn trace_move(
         if let Some(copy) = &mut copy
             && copy.apply_while(&on_the_way(contact, &step, part), record.tolerance, &go_on).is_ok()
         {
-            let state = copy.state();
-            page.push(record.sequence, part, state.displacement, state.force);
+            page.push(record.sequence, part, &copy.state().into());
         }
     }
     check()?;

@@ -91,7 +91,7 @@ pub struct Record {
 impl Record {
     /// The measurement, if the move is an observation.
     pub fn observation(&self) -> Option<ObservedForce> {
-        self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force, at))
+        self.measured.map(|Measured { force, at }| ObservedForce::new(force, self.state.force.unwrap_or_default(), at))
     }
 }
 

@@ -89,10 +89,10 @@ pub(super) fn tenant<R: RowReader>(row: &mut R) -> Result<Tenant, R::Error> {
     row.text(|name| Ok::<_, std::convert::Infallible>(Tenant::new(name)))
 }
 
-/// Sequence, time, the four targets, whether they are relative, how long the move takes, the tolerance, the state in
+/// Sequence, time, the six targets, whether they are relative, how long the move takes, the tolerance, the state in
 /// the order of [`State`], and the columns of [`measured`], and the name of the key that made the move.
 pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
-    Ok(Record {
+    let mut record = Record {
         sequence: row.count()?,
         at: row.time()?,
         step: Move {
@@ -100,6 +100,8 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             force: row.next()?,
             indentation: row.next()?,
             normal_force: row.next()?,
+            twist: row.next()?,
+            torque: row.next()?,
             relative: row.next()?,
             duration: row.next()?,
         },
@@ -123,12 +125,17 @@ pub(super) fn record<R: RowReader>(row: &mut R) -> Result<Record, R::Error> {
             viscous_work: row.next()?,
             surface_energy: None,
             adhesion_loss: None,
-            twist: None,
-            torque: None,
+            twist: row.next()?,
+            torque: row.next()?,
         },
         measured: measured(row)?,
         by: row.next::<Option<String>>()?.map(Arc::from),
-    })
+    };
+    if record.state.twist.is_some() {
+        // Their columns allow no null.
+        (record.state.displacement, record.state.force) = (None, None);
+    }
+    Ok(record)
 }
 
 /// Refuses a page of at most `limit` moves after the move `after` in which a move is missing; `last` is that of the

@@ -601,7 +601,7 @@ async fn the_history_names_the_key_that_made_a_move_where_keys_are_in_use() {
         let page: Value = reqwest::get(format!("{path}/history")).await.unwrap().json().await.unwrap();
         assert!(page["items"].as_array().unwrap().iter().all(|item| item.get("by").is_none()), "{page}");
         let csv = reqwest::get(format!("{path}/history?format=csv")).await.unwrap().text().await.unwrap();
-        assert!(csv.lines().next().unwrap().ends_with("innovation"), "{csv}");
+        assert!(csv.lines().next().unwrap().ends_with("innovation,twist,torque"), "{csv}");
         drop(open);
         let server = Guarded::start(&store, &[], &keys).await;
         let page = server.send(Some("reader"), "GET", &format!("/contacts/{id}/history"), None, &[]).await;

@@ -84,6 +84,8 @@ async fn a_history_is_the_same_in_every_format() {
         "observed_force",
         "predicted_force",
         "innovation",
+        "twist",
+        "torque",
     ];
     let items = page["items"].as_array().unwrap();
     assert_eq!(items.len(), 6);
@@ -334,7 +336,8 @@ async fn the_loop_has_points_on_the_way_of_each_move_and_ends_in_the_recorded_st
     }
     assert_eq!(whole, rows(&format!("{path}&format=csv")).await.0);
     // Nothing was measured.
-    let names = ["sequence", "part", "displacement", "force", "observed_force", "predicted_force", "innovation"];
+    let own = ["sequence", "part", "displacement", "force", "observed_force", "predicted_force", "innovation"];
+    let names = [&own[..], &["twist", "torque"]].concat();
     let row = |row: usize| names.iter().map(|name| page[*name][row].clone()).collect();
     hold(&server, &path, &names, &(0..=5 * points).map(row).collect::<Vec<Vec<Value>>>()).await;
     for query in ["points_per_move=0", "points_per_move=101"] {

@@ -1,4 +1,4 @@
-//! Stored contacts that adhere or have a shear strength, replayed and in their history. Their values are tested in
+//! Stored contacts that adhere, have a shear strength or are twisted, replayed and in their history. Their values are tested in
 //! `crates/mechanics/tests/physics`, and what is refused of a document in `crates/compute/tests/documents`.
 
 use std::sync::Arc;
@@ -56,4 +56,71 @@ async fn contacts_under_limit_laws_are_stored_replayed_and_listed() {
             assert!(item["state"].get("adhesion_loss").is_none(), "{item}");
         }
     }
+}
+
+#[tokio::test]
+async fn a_twisted_contact_is_stored_replayed_listed_and_drawn() {
+    let memory = Arc::new(SqliteStore::in_memory().unwrap());
+    let (cached, replayed) = (Server::with(memory.clone(), CAPACITY).await, Server::with(memory, 0).await);
+    let body = json!({
+        "profile": {"type": "sphere", "radius": 1.0},
+        "material": {"effective": {"e_star": 1.0, "g_star": 0.8, "shear_modulus": 0.5}},
+        "friction": 0.4,
+        "preload": {"indentation": 0.5}
+    });
+    let made = good(cached.post("/contacts", &body).await).await;
+    let place = format!("/contacts/{}", made["id"].as_str().unwrap());
+    let moves = format!("{place}/move");
+    let first =
+        good(cached.post(&moves, &json!({"twist": 0.1, "stress": {"points": 5, "fields": ["hoop"]}})).await).await;
+    assert!(number(&first["state"]["torque"]) > 0.0 && number(&first["stress"]["hoop"][2]) > 0.0, "{first}");
+    assert_eq!((first["state"].get("displacement"), first["state"].get("force")), (None, None));
+    let path = json!({"path": {"torque": [-0.01, 0.01]}});
+    let second = good(cached.post(&format!("{place}/path"), &path).await).await;
+    assert!((number(&second["steps"][0]["torque"]) + 0.01).abs() < 1e-15, "{second}");
+    let shift = problem(cached.post(&moves, &json!({"displacement": 0.1})).await).await;
+    assert_eq!(shift.code, "twist_with_shift");
+    for (call, body) in [
+        ("relax", json!({"reversals": 3})),
+        ("observations", json!({"observations": [{"displacement": 0.1, "force": 0.1}]})),
+    ] {
+        let refused = problem(cached.post(&format!("{place}/{call}"), &body).await).await;
+        assert!(["invalid_input", "twist_with_shift"].contains(&refused.code.as_str()), "{call}: {refused:?}");
+    }
+    let both = problem(cached.post(&moves, &json!({"twist": 0.1, "force": 0.1})).await).await;
+    assert_eq!((both.code.as_str(), &*both.errors[0].pointer), ("twist_with_shift", "/force"));
+    let much = problem(cached.post(&moves, &json!({"torque": 1.0})).await).await;
+    assert_eq!(much.code, "force_exceeds_friction");
+    let [shown, again] = [&cached, &replayed].map(|server| server.get(&place));
+    assert_eq!(good(shown.await).await["state"], good(again.await).await["state"]);
+    let stress = good(replayed.get(&format!("{place}/stress?points=5&fields=pressure,hoop")).await).await;
+    assert!(number(&stress["hoop"][1]) != 0.0, "{stress}");
+
+    good(cached.post(&moves, &json!({"indentation": -0.1})).await).await;
+    good(cached.post(&moves, &json!({"indentation": 0.5})).await).await;
+    good(cached.post(&moves, &json!({"displacement": 0.1})).await).await;
+    let page = good(replayed.get(&format!("{place}/history")).await).await;
+    let items = page["items"].as_array().unwrap();
+    for (index, twisted) in [true, true, true, false, false, false].into_iter().enumerate() {
+        assert_eq!(items[index]["state"].get("twist").is_some(), twisted, "{}", items[index]);
+        assert_eq!(items[index]["state"].get("force").is_some(), !twisted, "{}", items[index]);
+    }
+    assert_eq!(items[1]["move"], json!({"torque": -0.01}));
+    assert_eq!(items[1]["state"], second["steps"][0]);
+    let table = replayed.get(&format!("{place}/history?format=csv")).await.text().await.unwrap();
+    let names: Vec<&str> = table.lines().next().unwrap().split(',').collect();
+    let cell = |row: usize, name: &str| {
+        let column = names.iter().position(|known| *known == name).unwrap();
+        table.lines().nth(row).unwrap().split(',').nth(column).unwrap().to_owned()
+    };
+    for (row, [force, torque]) in [(2, [false, true]), (6, [true, false])] {
+        assert_eq!([!cell(row, "force").is_empty(), !cell(row, "torque").is_empty()], [force, torque], "{table}");
+    }
+    // Torque over angle, with points on the way.
+    let drawn = good(replayed.get(&format!("{place}/loop?points_per_move=4")).await).await;
+    let torques = drawn["torque"].as_array().unwrap();
+    assert_eq!(torques.iter().filter(|torque| !torque.is_null()).count(), 12, "{drawn}");
+    assert_eq!(drawn["force"].as_array().unwrap().iter().filter(|force| force.is_null()).count(), 12, "{drawn}");
+    let svg = replayed.get(&format!("{place}/loop?last=4&format=svg")).await.text().await.unwrap();
+    assert!(svg.contains("torque M") && svg.contains("angle of twist"), "{svg}");
 }

@@ -47,7 +47,7 @@ async fn the_scripts_of_python_reproduce_a_figure_and_follow_a_contact() {
         let moved = server.client.apply(made.id, &step, &Default::default()).await.unwrap();
         let line = lines.next().unwrap();
         let row: Vec<&str> = line.split(',').collect();
-        assert_eq!((row[0], row[3].parse()), (index.to_string().as_str(), Ok(moved.state.force)), "{line}");
+        assert_eq!((row[0], row[3].parse()), (index.to_string().as_str(), Ok(moved.state.force.unwrap())), "{line}");
     }
     assert!(follow.wait().unwrap().success());
 }

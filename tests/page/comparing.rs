@@ -36,7 +36,10 @@ async fn a_measured_file_and_another_contact_are_drawn_over_the_loop_and_a_link_
     let states = client.history(scene.ball.id, None, None).await.unwrap().items;
     // The same states as a rig would record them: the time first, in µm and mN, with decimal commas and a gap.
     let row = |index: usize, u: f64, f: f64| format!("{index};{};{}\n", u * 1e6, f * 1e3).replace('.', ",");
-    let rows = states.iter().enumerate().map(|(index, item)| row(index, item.state.displacement, item.state.force));
+    let rows = states
+        .iter()
+        .enumerate()
+        .map(|(index, item)| row(index, item.state.displacement.unwrap(), item.state.force.unwrap()));
     let table = format!("# rig\nTime (s);Displacement (um);Force (mN)\n{}9;;\n", rows.collect::<String>());
 
     scene.open(&scene.ball, "").await;

@@ -19,6 +19,8 @@ const APART: Move = Move {
     force: None,
     normal_force: None,
     duration: None,
+    twist: None,
+    torque: None,
     relative: false,
 };
 

@@ -49,7 +49,9 @@ pub fn record(sequence: u64) -> Record {
     Record {
         sequence,
         step: Move {
-            displacement: Some(number * 1e-9),
+            displacement: (!sequence.is_multiple_of(5)).then_some(number * 1e-9),
+            twist: sequence.is_multiple_of(5).then_some(number * 1e-3),
+            torque: sequence.is_multiple_of(7).then_some(number * 1e-4),
             duration: sequence.is_multiple_of(4).then_some(number / 9.0),
             relative: sequence.is_multiple_of(2),
             ..Move::default()
@@ -57,8 +59,8 @@ pub fn record(sequence: u64) -> Record {
         tolerance: 1e-10 / number,
         state: State {
             stick_centre: None,
-            displacement: number * 1e-9,
-            force: number / 3.0,
+            displacement: (!sequence.is_multiple_of(5)).then_some(number * 1e-9),
+            force: (!sequence.is_multiple_of(5)).then_some(number / 3.0),
             indentation: 1.0 / number,
             normal_force: number.sqrt(),
             contact_radius: number.ln_1p(),
@@ -73,8 +75,8 @@ pub fn record(sequence: u64) -> Record {
             viscous_work: sequence.is_multiple_of(4).then_some(number * 0.3),
             surface_energy: None,
             adhesion_loss: None,
-            twist: None,
-            torque: None,
+            twist: sequence.is_multiple_of(5).then_some(number * 2e-3),
+            torque: sequence.is_multiple_of(5).then_some(number * 0.9),
         },
         measured: sequence.is_multiple_of(3).then(|| Measured {
             force: -number / 7.0,

@@ -52,7 +52,7 @@ async fn migrate(place: &Place, steps: &[&'static str]) -> Result<(), String> {
 async fn fill(store: &dyn Store) -> [Uuid; 3] {
     let (made, _) = stored(store, 3).await;
     let mut awkward = record(4);
-    (awkward.step.force, awkward.state.force, awkward.state.elastic_energy) = (Some(-0.0), -0.0, 5e-324);
+    (awkward.step.force, awkward.state.force, awkward.state.elastic_energy) = (Some(-0.0), Some(-0.0), 5e-324);
     store.append(made.id, 3, vec![awkward], Some(receipt("kept", None, 4))).await.unwrap();
     store.save_snapshot(made.id, snapshot(4), None).await.unwrap();
     let fork = Session { sequence: 4, tenant: Tenant::new("lab"), ..session(None) };
@@ -166,7 +166,7 @@ async fn what_earlier_versions_have_stored_is_read() {
             let [read] = store.history(id, 0, 10).await.unwrap().try_into().unwrap();
             assert_eq!(
                 (read.measured.map(|measured| measured.force), exact(&read.step.force), exact(&read.state.force)),
-                ((version > 1).then_some(0.5), exact(&Some(-0.0)), exact(&-0.0))
+                ((version > 1).then_some(0.5), exact(&Some(-0.0)), exact(&Some(-0.0)))
             );
             assert_eq!((read.state.memory_depth, read.state.elastic_energy, read.by), (9, 8.0, None));
             let next = Record { sequence: 2, ..record(3) };

@@ -189,7 +189,7 @@ async fn people_can_read_along() {
         let (force, energy, regime): (f64, f64, String) = (row.get(3)?, row.get(4)?, row.get(5)?);
         Ok((contact, sequence, exact(&[target, force, energy]), regime, row.get::<_, bool>(6)?))
     });
-    let numbers = exact(&[0.5, reply.state.force, reply.state.dissipated_energy]);
+    let numbers = exact(&[0.5, reply.state.force.unwrap(), reply.state.dissipated_energy]);
     assert_eq!(row.unwrap(), (id.to_string(), 1, numbers, "partial_slip".to_owned(), true));
     let seen: (String, i64) =
         reader.query_row("SELECT id, sequence FROM sessions", [], |row| Ok((row.get(0)?, row.get(1)?))).unwrap();

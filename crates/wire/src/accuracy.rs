@@ -177,7 +177,7 @@ impl Document for AccuracyRequest {
         if let Some(Plan::Timed(..)) = &plan {
             faults.unanswerable(JsonPath::Root.member("path").member("duration"), Error::NoMemory);
         }
-        if let Some(Plan::Twist(_)) = &plan {
+        if plan.as_ref().is_some_and(Plan::twists) {
             faults
                 .add(JsonPath::Root.member("path"), "solvers are compared on paths along the surface, without a twist");
         }

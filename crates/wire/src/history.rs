@@ -39,10 +39,18 @@ pub struct LoopPage: Default {
     pub sequence: Vec<u64>,
     /// Fraction of that move at the point, a pure number: 1 at its end.
     pub part: Vec<f64>,
-    /// Tangential displacement U of the indenter, m; positive along x.
-    pub displacement: Vec<f64>,
-    /// Tangential force F_x, N.
-    pub force: Vec<f64>,
+    /// Tangential displacement U of the indenter, m; positive along x; `null` while the contact is twisted.
+    pub displacement: Vec<Option<f64>>,
+    /// Tangential force F_x, N; `null` while the contact is twisted.
+    pub force: Vec<Option<f64>>,
+    /// Angle of twist, rad, `null` while the contact is not twisted; left out if the page has no twist.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub twist: Vec<Option<f64>>,
+    /// Torque, N·m, as `twist`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schema(required = false)]
+    pub torque: Vec<Option<f64>>,
     /// Force that was measured at each point, N, `null` where none was measured; left out if the page has no measured
     /// force.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -58,17 +66,23 @@ impl LoopPage {
     pub fn after(after: u64) -> LoopPage {
         let mut page = LoopPage::default();
         if after == 0 {
-            page.push(0, 1.0, 0.0, 0.0);
+            page.push(0, 1.0, &State { displacement: Some(0.0), force: Some(0.0), ..State::default() });
         }
         page
     }
 
     /// Adds a point within a move.
-    pub fn push(&mut self, sequence: u64, part: f64, displacement: f64, force: f64) {
+    pub fn push(&mut self, sequence: u64, part: f64, state: &State) {
+        if state.twist.is_some() || !self.twist.is_empty() {
+            for (all, value) in [(&mut self.twist, state.twist), (&mut self.torque, state.torque)] {
+                all.resize(self.sequence.len(), None);
+                all.push(value);
+            }
+        }
         self.sequence.push(sequence);
         self.part.push(part);
-        self.displacement.push(displacement);
-        self.force.push(force);
+        self.displacement.push(state.displacement);
+        self.force.push(state.force);
     }
 
     /// Adds the end of a move, with the force that was measured there, N, if one was.
@@ -77,7 +91,7 @@ impl LoopPage {
             self.observed_force.resize(self.force.len(), None);
             self.observed_force.push(observed_force);
         }
-        self.push(sequence, 1.0, state.displacement, state.force);
+        self.push(sequence, 1.0, state);
     }
 
     /// The force that was measured at a point, N, if one was.

@@ -6,7 +6,7 @@ mod timed;
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::{Normal, Tangential};
 
-use super::plane::{PlanarPlan, TwistPlan};
+use super::plane::PlanarPlan;
 use crate::prelude::*;
 
 pub(crate) use cycles::PHASE;
@@ -17,9 +17,9 @@ pub use timed::{Timed, TimedPath, TimedSimulatedPath};
 const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 
 requests! {
-/// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
-/// (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement
-/// stays, without a normal one the indentation stays.
+/// One move, straight to its targets: at most one tangential target (`displacement`, `force`, `twist` or `torque`) and
+/// one normal target (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target
+/// displacement and twist stay, without a normal one the indentation stays.
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct Move: Copy, Default {
     /// Tangential displacement of the indenter, m.
@@ -33,6 +33,11 @@ pub struct Move: Copy, Default {
     /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
     /// it waits.
     pub duration: Option<f64> = range::DURATION,
+    /// Angle of twist about the axis of the contact, rad, since it last touched, in place of `displacement` or `force`.
+    pub twist: Option<f64> = range::TWIST,
+    /// Torque about the axis of the contact, N·m, in place of `twist`; its magnitude must stay below that of gross
+    /// slip.
+    pub torque: Option<f64> = range::TORQUE,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -56,6 +61,10 @@ pub enum Path {
     "equal_peaks" => EqualPeaks(EqualPeaks),
     /// Equal cycles about a mean, under a constant load or one that oscillates too.
     "cycles" => Cycles(CyclicPath),
+    /// Angles of twist, rad, one move each.
+    "twist" => Twist(Vec<f64>) = Array(PATH_MOVES, range::TWIST),
+    /// Torques, N·m, one move each.
+    "torque" => Torque(Vec<f64>) = Array(PATH_MOVES, range::TORQUE),
 }
 }
 
@@ -113,8 +122,10 @@ pub enum Plan {
     Observations(Vec<Observation>),
     /// Moves in the plane, which `POST /simulate` and `POST /accuracy` follow.
     Plane(PlanarPlan),
-    /// Moves of a contact that is twisted, which `POST /simulate` follows.
-    Twist(TwistPlan),
+    /// Angles of twist.
+    Twist(Vec<f64>),
+    /// Torques.
+    Torque(Vec<f64>),
     /// Moves along a line that take this long, s, unless they say so themselves.
     Timed(Box<Plan>, f64),
 }
@@ -130,8 +141,32 @@ impl Move {
         Move { force: Some(force), ..Move::default() }
     }
 
+    /// A move to an angle of twist, rad.
+    pub fn twist(twist: f64) -> Move {
+        Move { twist: Some(twist), ..Move::default() }
+    }
+
+    /// A move to a torque, N·m.
+    pub fn torque(torque: f64) -> Move {
+        Move { torque: Some(torque), ..Move::default() }
+    }
+
+    /// Whether it has an angle of twist or a torque for its target.
+    pub fn twists(&self) -> bool {
+        self.twist.is_some() || self.torque.is_some()
+    }
+
     /// Notes the faults of the move at `at`, beside the limits of its members.
     pub fn check(&self, at: JsonPath<'_>, faults: &mut Faults) {
+        if self.twists() {
+            let others = [("displacement", self.displacement.is_some()), ("force", self.force.is_some())];
+            for (name, _) in others.into_iter().filter(|(_, given)| *given) {
+                faults.unanswerable(at.member(name), mechanics::Error::TwistWithShift);
+            }
+        }
+        if self.twist.is_some() && self.torque.is_some() {
+            faults.add(at.member("torque"), "conflicts with `twist`: at most one of them is allowed");
+        }
         if self.displacement.is_some() && self.force.is_some() {
             faults.add(at.member("force"), "conflicts with `displacement`: at most one tangential target is allowed");
         }
@@ -139,10 +174,11 @@ impl Move {
             faults.add(at.member("normal_force"), "conflicts with `indentation`: at most one normal target is allowed");
         }
         let named = [self.displacement, self.force, self.indentation, self.normal_force, self.duration];
-        if named.iter().all(Option::is_none) {
+        if named.iter().all(Option::is_none) && !self.twists() {
             faults.add(
                 at,
-                "no target: name `displacement` or `force`, or `indentation` or `normal_force`, or one of each",
+                "no target: name `displacement`, `force`, `twist` or `torque`, or `indentation` or `normal_force`, or \
+                 one of each",
             );
         }
     }
@@ -155,6 +191,8 @@ impl Move {
             Quantity::Indentation => self.indentation.is_some(),
             Quantity::NormalForce => self.normal_force.is_some(),
             Quantity::Duration => self.duration.is_some(),
+            Quantity::Twist => self.twist.is_some(),
+            Quantity::Torque => self.torque.is_some(),
             _ => false,
         }
     }
@@ -163,12 +201,14 @@ impl Move {
     /// and indentation, and followed in many small steps.
     pub fn is_curved(&self) -> bool {
         let normal = self.indentation.is_some() || self.normal_force.is_some();
-        (self.force.is_some() && normal) || (self.displacement.is_some() && self.normal_force.is_some())
+        let forced = self.force.is_some() || self.twists();
+        (forced && normal) || (self.displacement.is_some() && self.normal_force.is_some())
     }
 
     /// The move for the mechanics.
     pub fn step(&self) -> mechanics::Move {
-        let tangential = self.displacement.map(Tangential::Displacement).or(self.force.map(Tangential::Force));
+        let shift = self.displacement.map(Tangential::Displacement).or(self.force.map(Tangential::Force));
+        let tangential = shift.or(self.twist.map(Tangential::Twist)).or(self.torque.map(Tangential::Torque));
         let normal = self.indentation.map(Normal::Indentation).or(self.normal_force.map(Normal::NormalForce));
         let duration = self.duration.unwrap_or(0.0);
         mechanics::Move { tangential, normal, relative: self.relative, duration }
@@ -191,6 +231,8 @@ impl Path {
             Path::FallingAmplitude(fall) => Plan::FallingAmplitude(fall),
             Path::EqualPeaks(peaks) => Plan::EqualPeaks(peaks),
             Path::Cycles(cycles) => Plan::Cycles(cycles.check(at.member("cycles"), faults)?),
+            Path::Twist(targets) => Plan::Twist(targets),
+            Path::Torque(targets) => Plan::Torque(targets),
         })
     }
 }
@@ -200,15 +242,27 @@ impl Plan {
     pub fn length(&self) -> usize {
         match self {
             Plan::Moves(moves) => moves.len(),
-            Plan::Displacement(targets) | Plan::Force(targets) => targets.len(),
+            Plan::Displacement(targets) | Plan::Force(targets) | Plan::Twist(targets) | Plan::Torque(targets) => {
+                targets.len()
+            }
             Plan::FallingAmplitude(fall) => fall.reversals.saturating_add(1),
             Plan::EqualPeaks(peaks) => peaks.reversals.saturating_add(1),
             Plan::Cycles(cycles) => cycles.length(),
             Plan::Single(_) => 1,
             Plan::Observations(observations) => observations.len(),
             Plan::Plane(plane) => plane.moves.len(),
-            Plan::Twist(twist) => twist.moves.len(),
             Plan::Timed(plan, _) => plan.length(),
+        }
+    }
+
+    /// Whether any of them twists the contact.
+    pub fn twists(&self) -> bool {
+        match self {
+            Plan::Twist(_) | Plan::Torque(_) => true,
+            Plan::Moves(moves) => moves.iter().any(Move::twists),
+            Plan::Single(step) => step.twists(),
+            Plan::Timed(plan, _) => plan.twists(),
+            _ => false,
         }
     }
 
@@ -218,9 +272,10 @@ impl Plan {
             Plan::Moves(moves) => moves.iter().filter(|step| step.is_curved()).count(),
             Plan::Cycles(cycles) if cycles.is_curved() => cycles.length(),
             Plan::Single(step) => usize::from(step.is_curved()),
-            Plan::Twist(twist) => twist.curved,
             Plan::Timed(plan, _) => plan.curved(),
             Plan::Displacement(_)
+            | Plan::Twist(_)
+            | Plan::Torque(_)
             | Plan::Force(_)
             | Plan::FallingAmplitude(_)
             | Plan::EqualPeaks(_)
@@ -244,7 +299,8 @@ impl Plan {
             Plan::Single(_) => member,
             Plan::Observations(_) => format!("/observations/{index}/displacement"),
             Plan::Plane(plane) => plane.place_of(index, quantity),
-            Plan::Twist(twist) => twist.place_of(index, quantity),
+            Plan::Twist(_) => format!("/path/twist/{index}"),
+            Plan::Torque(_) => format!("/path/torque/{index}"),
             Plan::Timed(plan, _) => {
                 let own = matches!(&**plan, Plan::Moves(moves) if moves[index].duration.is_some());
                 if quantity == Some(Quantity::Duration) && !own {

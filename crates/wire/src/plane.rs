@@ -7,8 +7,8 @@ use utoipa::openapi::schema::{AnyOfBuilder, ArrayBuilder, OneOfBuilder, SchemaFo
 use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
 
 use stickslip_mechanics as mechanics;
+use stickslip_mechanics::Normal;
 use stickslip_mechanics::rings::{self, Arc, PlanarTarget, straight_moves};
-use stickslip_mechanics::{Normal, Tangential};
 
 use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, PHASE};
 use super::simulate::SimulateReply;
@@ -80,9 +80,9 @@ impl Limit<Components> for Range {
 }
 
 requests! {
-/// One move, straight to its targets: at most one tangential target (`displacement` or `force`) and one normal target
-/// (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target the displacement
-/// stays, without a normal one the indentation stays. A pair [x, y] is a target in the plane.
+/// One move, straight to its targets: at most one tangential target (`displacement`, `force`, `twist` or `torque`) and
+/// one normal target (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target
+/// displacement and twist stay, without a normal one the indentation stays. A pair [x, y] is a target in the plane.
 #[schema(example = json!({"displacement": [1e-7, 5e-8]}))]
 pub struct SimulatedMove: Copy, Default {
     /// Tangential displacement of the indenter, m, along x or [x, y].
@@ -277,23 +277,6 @@ pub struct PlanarPlan {
     form: Form,
 }
 
-/// A checked path of a contact that is twisted.
-#[derive(Clone, Debug)]
-pub struct TwistPlan {
-    /// The moves.
-    pub moves: Vec<mechanics::Move>,
-    form: Form,
-    /// How many are curved.
-    pub(crate) curved: usize,
-}
-
-impl TwistPlan {
-    /// As [`PlanarPlan::place_of`].
-    pub(crate) fn place_of(&self, index: usize, quantity: Option<Quantity>) -> String {
-        self.form.place_of(index, quantity)
-    }
-}
-
 /// How the path was sent.
 #[derive(Clone, Copy, Debug)]
 enum Form {
@@ -323,8 +306,8 @@ impl From<Move> for SimulatedMove {
             indentation: step.indentation,
             normal_force: step.normal_force,
             duration: step.duration,
-            twist: None,
-            torque: None,
+            twist: step.twist,
+            torque: step.torque,
             relative: step.relative,
         }
     }
@@ -339,6 +322,8 @@ impl From<Path> for SimulatedPath {
             Path::FallingAmplitude(fall) => SimulatedPath::FallingAmplitude(fall),
             Path::EqualPeaks(peaks) => SimulatedPath::EqualPeaks(peaks),
             Path::Cycles(cycles) => SimulatedPath::Cycles(cycles),
+            Path::Twist(targets) => SimulatedPath::Twist(targets),
+            Path::Torque(targets) => SimulatedPath::Torque(targets),
         }
     }
 }
@@ -351,36 +336,8 @@ impl SimulatedMove {
     /// The move along x.
     fn along_x(&self) -> Move {
         let [x, force] = self.pairs().map(|(_, components)| components.map(|components| components.pair()[0]));
-        let SimulatedMove { indentation, normal_force, duration, relative, .. } = *self;
-        Move { displacement: x, force, indentation, normal_force, duration, relative }
-    }
-
-    fn twists(&self) -> bool {
-        self.twist.is_some() || self.torque.is_some()
-    }
-
-    /// As [`Move::check`], of a move that may twist.
-    fn check_twist(&self, at: JsonPath<'_>, faults: &mut Faults) {
-        if !self.twists() {
-            return self.along_x().check(at, faults);
-        }
-        let others = [("displacement", self.displacement.is_some()), ("force", self.force.is_some())];
-        for (name, _) in others.into_iter().filter(|(_, given)| *given) {
-            faults.unanswerable(at.member(name), mechanics::Error::TwistWithShift);
-        }
-        if self.twist.is_some() && self.torque.is_some() {
-            faults.add(at.member("torque"), "conflicts with `twist`: at most one of them is allowed");
-        }
-        if self.indentation.is_some() && self.normal_force.is_some() {
-            faults.add(at.member("normal_force"), "conflicts with `indentation`: at most one normal target is allowed");
-        }
-    }
-
-    /// The move for the mechanics, along x or by a twist.
-    fn step(&self) -> mechanics::Move {
-        let twist = self.twist.map(Tangential::Twist).or(self.torque.map(Tangential::Torque));
-        let step = self.along_x().step();
-        mechanics::Move { tangential: twist.or(step.tangential), ..step }
+        let SimulatedMove { indentation, normal_force, duration, twist, torque, relative, .. } = *self;
+        Move { displacement: x, force, indentation, normal_force, duration, twist, torque, relative }
     }
 
     fn in_plane(&self) -> rings::PlanarMove {
@@ -392,6 +349,14 @@ impl SimulatedMove {
 }
 
 impl SimulatedPath {
+    fn twists(&self) -> bool {
+        match self {
+            SimulatedPath::Twist(_) | SimulatedPath::Torque(_) => true,
+            SimulatedPath::Moves(moves) => moves.iter().any(|step| step.along_x().twists()),
+            _ => false,
+        }
+    }
+
     /// The path without pairs; `None` if it has any.
     pub fn along_a_line(self) -> Option<Path> {
         let is_pair = |target: Option<Components>| matches!(target, Some(Components::Many(_)));
@@ -407,43 +372,17 @@ impl SimulatedPath {
             SimulatedPath::FallingAmplitude(fall) => Path::FallingAmplitude(fall),
             SimulatedPath::EqualPeaks(peaks) => Path::EqualPeaks(peaks),
             SimulatedPath::Cycles(cycles) => Path::Cycles(cycles),
-            SimulatedPath::Ellipse(_) | SimulatedPath::Twist(_) | SimulatedPath::Torque(_) => return None,
+            SimulatedPath::Twist(targets) => Path::Twist(targets),
+            SimulatedPath::Torque(targets) => Path::Torque(targets),
+            SimulatedPath::Ellipse(_) => return None,
         })
-    }
-
-    /// The path of a contact that is twisted, if it is one; faults of its moves are noted at `at`.
-    fn twisting(&self, at: JsonPath<'_>, faults: &mut Faults) -> Option<TwistPlan> {
-        let to = |target| mechanics::Move { tangential: Some(target), ..mechanics::Move::default() };
-        let list = |name, moves| Some(TwistPlan { moves, form: Form::Targets(name), curved: 0 });
-        match self {
-            SimulatedPath::Twist(targets) => {
-                list("twist", targets.iter().map(|angle| to(Tangential::Twist(*angle))).collect())
-            }
-            SimulatedPath::Torque(targets) => {
-                list("torque", targets.iter().map(|torque| to(Tangential::Torque(*torque))).collect())
-            }
-            SimulatedPath::Moves(moves) if moves.iter().any(SimulatedMove::twists) => {
-                if let Some(pair) = first_pair(moves) {
-                    faults.unanswerable(JsonPath::Pointer(&format!("/path{pair}")), mechanics::Error::TwistWithShift);
-                }
-                let place = at.member("moves");
-                moves.iter().enumerate().for_each(|(index, step)| step.check_twist(place.index(index), faults));
-                let curved = moves.iter().filter(|step| step.along_x().is_curved()).count();
-                Some(TwistPlan { moves: moves.iter().map(SimulatedMove::step).collect(), form: Form::Moves, curved })
-            }
-            _ => None,
-        }
     }
 
     /// The checked path, in the plane if it has pairs, is an ellipse, or `rings` are asked for.
     pub(crate) fn check(self, rings: bool, at: JsonPath<'_>, faults: &mut Faults) -> Option<Plan> {
         faults.none_within(at)?;
-        if let Some(plan) = self.twisting(at, faults) {
-            if rings {
-                let detail = "rings follow no twist: leave `solver` out";
-                return faults.refuse(JsonPath::Root.member("solver"), detail);
-            }
-            return Some(Plan::Twist(plan));
+        if rings && self.twists() {
+            return faults.refuse(JsonPath::Root.member("solver"), "rings follow no twist: leave `solver` out");
         }
         let plan = |moves: &mut dyn Iterator<Item = SimulatedMove>, form, first_pair: Option<String>| {
             let moves = moves.map(|step| step.in_plane()).collect();
@@ -455,6 +394,11 @@ impl SimulatedPath {
                 moves.iter().enumerate().for_each(|(index, step)| step.along_x().check(place.index(index), faults));
                 faults.none_within(at)?;
                 let first_pair = first_pair(moves);
+                if let Some(pair) = first_pair.as_ref().filter(|_| self.twists()) {
+                    let error = mechanics::Error::TwistWithShift;
+                    faults.unanswerable(JsonPath::Pointer(&format!("/path{pair}")), error);
+                    return None;
+                }
                 if rings || first_pair.is_some() {
                     let timed = moves.iter().position(|step| step.duration.is_some_and(|duration| duration > 0.0));
                     if let Some(timed) = timed {

@@ -119,8 +119,8 @@ codes! {
             contacts](line-contacts.md#bulk-stress)";
     /// The request is valid, but changes the load of a contact with a shear strength, or a twist, that carries shear.
     LoadMustBeConstant = 422 "load_must_be_constant": "The load must stay constant",
-        "with a shear strength, and to twist it, change the load before the first tangential move, or define a contact \
-            under the other load: [shear strength](shear-strength.md), [twist](twist.md)";
+        "with a shear strength, change the load before the first tangential move, or define a contact under the other \
+            load: [shear strength](shear-strength.md)";
     /// The request is valid, but twists a contact that has been moved along the surface, or the other way round.
     TwistWithShift = 422 "twist_with_shift": "Twist and tangential motion meet in one contact",
         "the direction of slip would depend on the angle: twist another contact, or lift it off in between: \

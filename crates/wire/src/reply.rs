@@ -1,6 +1,5 @@
 //! Parts that several replies share.
 
-use super::request::same_members;
 use crate::prelude::*;
 use stickslip_mechanics as mechanics;
 
@@ -34,16 +33,17 @@ pub struct ContactSummary: Default omits Option of mechanics::ContactSummary {
     pub thermal_conductance: Option<f64>,
     /// Load under which the contact pulls off, N, negative; only with `adhesion`.
     pub pull_off_force: Option<f64>,
-    /// Torque at gross slip, N·m; only where the path twists the contact.
+    /// Torque at gross slip, N·m; where the path twists the contact, and of a load curve.
     pub gross_slip_torque: Option<f64>,
 }
 
 /// The state after a move.
-pub struct State: Copy, Default omits Option of mechanics::State {
-    /// Tangential displacement U of the indenter, m; positive along x.
-    pub displacement: f64,
-    /// Tangential force F_x, N; positive for a positive displacement of a virgin contact.
-    pub force: f64,
+pub struct State: Copy, Default omits Option {
+    /// Tangential displacement U of the indenter, m; positive along x. Left out from the first twist until the contact
+    /// lifts off.
+    pub displacement: Option<f64>,
+    /// Tangential force F_x, N; positive for a positive displacement of a virgin contact. Left out as `displacement`.
+    pub force: Option<f64>,
     /// Indentation d, m; positive when pressed in, below zero the bodies are apart.
     pub indentation: f64,
     /// Normal force F_N, N; compression is positive.
@@ -77,9 +77,9 @@ pub struct State: Copy, Default omits Option of mechanics::State {
     /// What pulling off and jumping into contact have lost since the start, J; only with `adhesion`, and not in the
     /// stored moves of a contact.
     pub adhesion_loss: Option<f64>,
-    /// Angle of twist, rad, from the first twist until the contact lifts off; `displacement` and `force` then stay.
+    /// Angle of twist, rad, from the first twist until the contact lifts off, in place of `displacement`.
     pub twist: Option<f64>,
-    /// Torque, N·m, from then on.
+    /// Torque, N·m, in place of `force`.
     pub torque: Option<f64>,
 }
 }
@@ -152,9 +152,10 @@ pub struct Accuracy: Default omits Option {
     /// Estimated error of the dissipated energies, relative to μ F_N and the displacement of gross slip at the largest
     /// load of the path, a pure number; stated for rings and for curved paths.
     pub work_error: Option<f64>,
-    /// Number of rings of the solver in the plane, or of springs across the radius of bodies with memory.
+    /// Number of rings of the solver in the plane, or of springs across the radius, of bodies with memory or of a twist
+    /// under a load that changes.
     pub count: Option<usize>,
-    /// Number of steps on the whole path in the finest discretisation of rings, or of springs with memory.
+    /// Number of steps on the whole path in the finest discretisation of rings, or of springs with memory or of twist.
     pub steps: Option<usize>,
     /// How much stiffer under a normal load the bodies may be at most than they are taken to be, relative, a pure
     /// number, if Dundurs' β is not zero: full stick against none, ln((1+β)/(1−β))/(2β) − 1. `null` for line contacts
@@ -228,10 +229,40 @@ pub fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-same_members! {
-    mechanics::State [State] displacement force indentation normal_force contact_radius stick_radius stick_centre regime
-    dissipated_energy elastic_energy memory_depth electrical_conductance thermal_conductance
-    time viscous_work surface_energy adhesion_loss twist torque
+/// The members of a state that both types have alike.
+macro_rules! with_members {
+    ($state:ident, $Name:path { $displacement:expr, $force:expr }, $($member:ident)*) => {
+        $Name {
+            displacement: $displacement,
+            force: $force,
+            regime: $state.regime.into(),
+            $($member: $state.$member,)*
+        }
+    };
+    ($state:ident, $Name:path { $displacement:expr, $force:expr }) => {
+        with_members! {
+            $state, $Name { $displacement, $force },
+            indentation normal_force contact_radius stick_radius stick_centre dissipated_energy elastic_energy
+            memory_depth electrical_conductance thermal_conductance time viscous_work surface_energy adhesion_loss
+            twist torque
+        }
+    };
+}
+
+impl From<mechanics::State> for State {
+    fn from(state: mechanics::State) -> State {
+        let shifts = state.twist.is_none();
+        with_members! { state, State { shifts.then_some(state.displacement), shifts.then_some(state.force) } }
+    }
+}
+
+impl From<State> for mechanics::State {
+    /// A displacement that is not stated counts as zero.
+    fn from(state: State) -> mechanics::State {
+        with_members! {
+            state, mechanics::State { state.displacement.unwrap_or_default(), state.force.unwrap_or_default() }
+        }
+    }
 }
 
 impl Residual {

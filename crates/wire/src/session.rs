@@ -63,6 +63,11 @@ pub struct MoveRequest: Default {
     /// How long the move takes, s, at an even pace; at once if left out. Only of bodies with `prony`. Without a target
     /// it waits.
     pub duration: Option<f64> = range::DURATION,
+    /// Angle of twist about the axis of the contact, rad, since it last touched, in place of `displacement` or `force`.
+    pub twist: Option<f64> = range::TWIST,
+    /// Torque about the axis of the contact, N·m, in place of `twist`; its magnitude must stay below that of gross
+    /// slip.
+    pub torque: Option<f64> = range::TORQUE,
     /// Whether the numbers are increments to the present state, instead of the targets themselves.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub relative: bool,
@@ -278,10 +283,9 @@ impl Document for MoveRequest {
     type Checked = Advance;
 
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
-        let MoveRequest { displacement, force, indentation, normal_force, duration, relative, stress, tolerance } =
-            self;
-        let step = Move { displacement, force, indentation, normal_force, duration, relative };
+        let step = self.step();
         step.check(JsonPath::Root, faults);
+        let MoveRequest { stress, tolerance, .. } = self;
         let stress = stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
         let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
         Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None })
@@ -290,8 +294,28 @@ impl Document for MoveRequest {
 
 impl From<Move> for MoveRequest {
     fn from(step: Move) -> Self {
-        let Move { displacement, force, indentation, normal_force, duration, relative } = step;
-        MoveRequest { displacement, force, indentation, normal_force, duration, relative, ..MoveRequest::default() }
+        let Move { displacement, force, indentation, normal_force, duration, twist, torque, relative } = step;
+        let (stress, tolerance) = (None, None);
+        MoveRequest {
+            displacement,
+            force,
+            indentation,
+            normal_force,
+            duration,
+            twist,
+            torque,
+            relative,
+            stress,
+            tolerance,
+        }
+    }
+}
+
+impl MoveRequest {
+    fn step(&self) -> Move {
+        let MoveRequest { displacement, force, indentation, normal_force, duration, twist, torque, relative, .. } =
+            *self;
+        Move { displacement, force, indentation, normal_force, duration, twist, torque, relative }
     }
 }
 

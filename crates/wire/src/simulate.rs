@@ -172,7 +172,7 @@ impl Document for SimulateRequest {
             faults.unanswerable(JsonPath::Root.member("contact").member(member_of_law(&error)), error);
         }
         let hoop = stress.as_ref().is_some_and(|stress| stress.wants(Field::Hoop));
-        if hoop && !matches!(plan, Some(Plan::Twist(_))) {
+        if hoop && !plan.as_ref().is_some_and(Plan::twists) {
             faults.add(
                 JsonPath::Root.member("stress").member("fields"),
                 "`hoop` is the stress of a contact that is twisted: leave it out",

@@ -77,19 +77,24 @@ impl MoveSeries for History {
         Ok(moves)
     }
 
-    /// Displacement, force and friction work over the moves.
+    /// Displacement and force, or of a contact that is twisted angle and torque, and friction work over the moves.
     fn plot(page: &HistoryPage) -> Plot {
-        let panel = |name, unit, colour, of: fn(&State) -> f64| {
-            curve(name, unit, colour, page.items.iter().map(|item| (item.sequence as f64, of(&item.state))))
+        let panel = |name, unit, colour, of: fn(&State) -> Option<f64>| {
+            let points = page.items.iter().filter_map(|item| Some((item.sequence as f64, of(&item.state)?)));
+            curve(name, unit, colour, points)
         };
+        let first = if page.items.last().is_some_and(|item| item.state.twist.is_some()) {
+            let twist = panel("twist", "rad", Colour::Blue, |state| state.twist);
+            [twist, panel("torque", "N·m", Colour::Blue, |state| state.torque)]
+        } else {
+            let displacement = panel("displacement", "m", Colour::Blue, |state| state.displacement);
+            [displacement, panel("force", "N", Colour::Blue, |state| state.force)]
+        };
+        let work = panel("friction work", "J", Colour::Red, |state| Some(state.dissipated_energy));
         Plot::new(
             format!("History{}", move_series::shown(page.items.iter().map(|item| item.sequence))),
             Axis { name: "move", unit: None },
-            vec![
-                panel("displacement", "m", Colour::Blue, |state| state.displacement),
-                panel("force", "N", Colour::Blue, |state| state.force),
-                panel("friction work", "J", Colour::Red, |state| state.dissipated_energy),
-            ],
+            first.into_iter().chain([work]).collect(),
         )
     }
 
@@ -120,7 +125,7 @@ impl MoveSeries for History {
             observed("innovation", |observed| observed.innovation),
         ]);
         let first = items.first().map(|item| &item.state);
-        columns.extend(columns_of_some_states(first, |row| &items[row].state));
+        columns.extend(columns_of_some_states(first, true, |row| &items[row].state));
         if self.names_makers {
             columns.push(Column::new("by", Some(""), Cells::Words(Box::new(|row| items[row].by.as_deref()))));
         }

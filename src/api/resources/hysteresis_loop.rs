@@ -1,4 +1,5 @@
-//! `/contacts/{id}/loop`: the tangential force over the displacement along the moves of a contact.
+//! `/contacts/{id}/loop`: the tangential force over the displacement, or the torque over the angle of twist,
+//! along the moves of a contact.
 
 use stickslip_plot::{Axis, Colour, Plot};
 use stickslip_wire::{HistoryPage, LoopPage, ObservedForce, limits};
@@ -25,7 +26,8 @@ parameters! {
 
 /// Get the hysteresis loop of a contact
 ///
-/// Tangential force and displacement along moves, oldest first: a page, the newest, or all of them.
+/// Tangential force and displacement along moves, or torque and angle of twist, oldest first: a page, the newest, or all
+/// of them.
 #[utoipa::path(
     get, path = "/contacts/{id}/loop", tag = "contacts", params(ContactPath, MovesQuery, LoopQuery),
     responses((status = 200, description = "A page of the loop", body = LoopPage,
@@ -78,19 +80,27 @@ impl MoveSeries for Loop {
     }
 
     fn plot(page: &LoopPage) -> Plot {
-        let points = page.displacement.iter().copied().zip(page.force.iter().copied());
+        let twists = !page.twist.is_empty();
+        let (x, y) = if twists { (&page.twist, &page.torque) } else { (&page.displacement, &page.force) };
+        let points = x.iter().zip(y).filter_map(|(x, y)| (*x).zip(*y));
         let moves = move_series::shown(page.sequence.iter().copied().filter(|number| *number > 0));
         Plot::new(
             format!("Hysteresis loop{moves}"),
-            Axis::of("displacement U", "m"),
-            vec![move_series::curve("tangential force F", "N", Colour::Blue, points)],
+            if twists { Axis::of("angle of twist ω", "rad") } else { Axis::of("displacement U", "m") },
+            vec![if twists {
+                move_series::curve("torque M", "N·m", Colour::Blue, points)
+            } else {
+                move_series::curve("tangential force F", "N", Colour::Blue, points)
+            }],
         )
     }
 
     fn table<'a>(&self, page: &'a LoopPage) -> Table<'a> {
         let observed = |name, of: fn(&ObservedForce) -> f64| {
-            let at =
-                |row: usize| page.observed_force(row).map(|force| ObservedForce::new(force, page.force[row], None));
+            let at = |row: usize| {
+                let observed = page.observed_force(row).zip(page.force[row]);
+                observed.map(|(force, predicted)| ObservedForce::new(force, predicted, None))
+            };
             Column::floats(name, "N", move |row| at(row).as_ref().map(of))
         };
         let columns = vec![
@@ -101,6 +111,8 @@ impl MoveSeries for Loop {
             observed("observed_force", |observed| observed.force),
             observed("predicted_force", |observed| observed.predicted),
             observed("innovation", |observed| observed.innovation),
+            Column::floats("twist", "rad", |row| page.twist.get(row).copied().flatten()),
+            Column::floats("torque", "N·m", |row| page.torque.get(row).copied().flatten()),
         ];
         Table::flat(page.sequence.len(), columns)
     }

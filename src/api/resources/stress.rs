@@ -25,8 +25,8 @@ parameters! {
         radii: Vec<f64> = numbers(&Array(QUERY_RADII, range::CONTACT_RADIUS));
         /// Places along x of a line contact, m, in place of `radii`.
         x: Vec<f64> = numbers(&Array(QUERY_RADII, range::PLACE));
-        /// Which fields, separated by commas, out of `pressure`, `shear`, `slip` and `displacement`. If it is left out,
-        /// the first two.
+        /// Which fields, separated by commas, out of `pressure`, `shear`, `slip`, `displacement` and, of a contact that
+        /// is twisted, `hoop`. If it is left out, the first two.
         fields: Vec<Field> = fields();
         /// Whether the extrema of the shear stress are returned too.
         residual: bool = flag(), or false;

@@ -12,9 +12,10 @@ macro_rules! channel {
 // The columns of a move beside its contact and its stamp, in the order of `rows::record`.
 macro_rules! move_columns {
     () => {
-        "sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, relative, \
-         duration, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, regime, \
-         dissipated_energy, elastic_energy, memory_depth, time, viscous_work, observed_force, observed_at, made_by"
+        "sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, target_twist, \
+         target_torque, relative, duration, tolerance, displacement, force, indentation, normal_force, contact_radius, \
+         stick_radius, regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, twist, torque, \
+         observed_force, observed_at, made_by"
     };
 }
 
@@ -66,8 +67,8 @@ WITH locked AS (
     SET sequence = request.sequence,
         updated_at = coalesce(request.at, contacts.updated_at),
         updated_ns = coalesce(request.ns, contacts.updated_ns)
-    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[], $48::timestamptz[],
-        $49::smallint[]) AS request (id, expected, sequence, at, ns, moved_at, moved_ns)
+    FROM unnest($1::uuid[], $2::bigint[], $3::bigint[], $4::timestamptz[], $5::smallint[], $52::timestamptz[],
+        $53::smallint[]) AS request (id, expected, sequence, at, ns, moved_at, moved_ns)
     JOIN locked ON locked.id = request.id AND locked.sequence = request.expected
         AND (request.moved_at IS NULL OR (locked.updated_at, locked.updated_ns) = (request.moved_at, request.moved_ns))
     WHERE contacts.id = locked.id
@@ -78,22 +79,24 @@ WITH locked AS (
     ", stamp)
     SELECT move.*
     FROM unnest($6::uuid[], $7::bigint[], $8::timestamptz[], $9::smallint[], $10::double precision[],
-        $11::double precision[], $12::double precision[], $13::double precision[], $14::boolean[],
-        $15::double precision[], $16::double precision[], $17::double precision[], $18::double precision[],
+        $11::double precision[], $12::double precision[], $13::double precision[], $14::double precision[],
+        $15::double precision[], $16::boolean[], $17::double precision[], $18::double precision[],
         $19::double precision[], $20::double precision[], $21::double precision[], $22::double precision[],
-        $23::text[], $24::double precision[], $25::double precision[], $26::bigint[], $27::double precision[],
-        $28::double precision[], $29::double precision[], $30::bigint[], $31::text[], $32::bigint[])
+        $23::double precision[], $24::double precision[], $25::text[], $26::double precision[],
+        $27::double precision[], $28::bigint[], $29::double precision[], $30::double precision[],
+        $31::double precision[], $32::double precision[], $33::double precision[], $34::bigint[], $35::text[],
+        $36::bigint[])
         AS move (contact)
     JOIN won ON won.id = move.contact
 ), made AS (
     INSERT INTO contacts (id, label, definition, sequence, created_at, created_ns, updated_at, updated_ns, tenant)
-    SELECT * FROM unnest($39::uuid[], $40::text[], $41::text[], $42::bigint[], $43::timestamptz[], $44::smallint[],
-        $45::timestamptz[], $46::smallint[], $47::text[])
+    SELECT * FROM unnest($43::uuid[], $44::text[], $45::text[], $46::bigint[], $47::timestamptz[], $48::smallint[],
+        $49::timestamptz[], $50::smallint[], $51::text[])
     RETURNING id
 ), kept AS (
     INSERT INTO receipts (key, fingerprint, created, sequence, body)
     SELECT receipt.key, receipt.fingerprint, receipt.created, receipt.sequence, receipt.body
-    FROM unnest($33::uuid[], $34::text[], $35::bytea[], $36::uuid[], $37::bigint[], $38::bytea[])
+    FROM unnest($37::uuid[], $38::text[], $39::bytea[], $40::uuid[], $41::bigint[], $42::bytea[])
         AS receipt (contact, key, fingerprint, created, sequence, body)
     JOIN (SELECT id FROM won UNION ALL SELECT id FROM made) AS changed ON changed.id = receipt.contact
     ORDER BY receipt.key

@@ -32,7 +32,7 @@ static INSERT_MOVE: LazyLock<String> = LazyLock::new(|| {
     format!(
         "INSERT INTO moves (contact, {MOVE_COLUMNS})
          VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20,
-             ?21, ?22, ?23, ?24, ?25, ?26)"
+             ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28, ?29, ?30)"
     )
 });
 

@@ -12,9 +12,9 @@ use crate::store::rows::{self, RowReader, Scalar};
 
 /// The columns of a move beside its contact, in the order of [`insert_move`] and [`record`].
 pub(super) const MOVE_COLUMNS: &str = "sequence, at, to_displacement, to_force, to_indentation, to_normal_force, \
-     relative, duration, tolerance, displacement, force, indentation, normal_force, contact_radius, stick_radius, \
-     regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, observed_force, observed_at, \
-     made_by, negative_zeros";
+     to_twist, to_torque, relative, duration, tolerance, displacement, force, indentation, normal_force, \
+     contact_radius, stick_radius, regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, \
+     twist, torque, observed_force, observed_at, made_by, negative_zeros";
 
 /// The columns of [`rows::summary`], of [`CONTACTS`].
 pub(super) const SUMMARY_COLUMNS: &str = "c.id, c.label, coalesce(m.sequence, 0), c.created_at, \
@@ -108,11 +108,13 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         step.force,
         step.indentation,
         step.normal_force,
+        step.twist,
+        step.torque,
         step.relative,
         step.duration,
         tolerance,
-        state.displacement,
-        state.force,
+        state.displacement.unwrap_or_default(),
+        state.force.unwrap_or_default(),
         state.indentation,
         state.normal_force,
         state.contact_radius,
@@ -123,6 +125,8 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         to_integer(state.memory_depth as u64)?,
         state.time,
         state.viscous_work,
+        state.twist,
+        state.torque,
         measured.map(|measured| measured.force),
         measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?,
         by.as_deref(),
@@ -146,7 +150,7 @@ pub(super) fn record(row: &mut Reader<'_, '_>) -> rusqlite::Result<Record> {
 }
 
 /// The numbers of a move, in the order of the bits of `negative_zeros`.
-fn numbers(record: &mut Record) -> [Option<&mut f64>; 17] {
+fn numbers(record: &mut Record) -> [Option<&mut f64>; 21] {
     let Record { step, tolerance, state, measured, .. } = record;
     [
         step.displacement.as_mut(),
@@ -154,8 +158,8 @@ fn numbers(record: &mut Record) -> [Option<&mut f64>; 17] {
         step.indentation.as_mut(),
         step.normal_force.as_mut(),
         Some(tolerance),
-        Some(&mut state.displacement),
-        Some(&mut state.force),
+        state.displacement.as_mut(),
+        state.force.as_mut(),
         Some(&mut state.indentation),
         Some(&mut state.normal_force),
         Some(&mut state.contact_radius),
@@ -166,6 +170,10 @@ fn numbers(record: &mut Record) -> [Option<&mut f64>; 17] {
         step.duration.as_mut(),
         state.time.as_mut(),
         state.viscous_work.as_mut(),
+        step.twist.as_mut(),
+        step.torque.as_mut(),
+        state.twist.as_mut(),
+        state.torque.as_mut(),
     ]
 }
 

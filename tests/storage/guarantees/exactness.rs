@@ -30,7 +30,7 @@ const AWKWARD: [f64; 18] = [
     0.300_000_000_000_000_04,
 ];
 
-/// A move of seventeen numbers.
+/// A move of up to nineteen numbers.
 fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
     let mut optional = |present: bool| present.then(&mut number);
     let step = Move {
@@ -39,11 +39,15 @@ fn with(sequence: u64, mut number: impl FnMut() -> f64) -> Record {
         indentation: optional(sequence.is_multiple_of(3)),
         normal_force: optional(sequence % 3 == 1),
         duration: optional(sequence % 4 == 1),
+        twist: optional(sequence.is_multiple_of(5)),
+        torque: optional(sequence.is_multiple_of(7)),
         relative: sequence.is_multiple_of(5),
     };
     let state = State {
-        displacement: number(),
-        force: number(),
+        displacement: (!sequence.is_multiple_of(5)).then(&mut number),
+        force: (!sequence.is_multiple_of(5)).then(&mut number),
+        twist: sequence.is_multiple_of(5).then(&mut number),
+        torque: sequence.is_multiple_of(5).then(&mut number),
         indentation: number(),
         normal_force: number(),
         contact_radius: number(),

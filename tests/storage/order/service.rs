@@ -127,14 +127,15 @@ async fn send(client: &Client, id: Uuid, request: &Request) -> Result<Reply, NoR
     let reply = match &request.operation {
         Operation::Advance(steps) if steps.len() == 1 => {
             let reply = client.apply(id, &step(steps[0]).into(), &options).await;
-            reply.map(|reply| Reply::Advanced(reply.sequence, vec![units(reply.state.displacement)]))
+            reply.map(|reply| Reply::Advanced(reply.sequence, vec![units(reply.state.displacement.unwrap())]))
         }
         Operation::Advance(steps) => {
             let moves = steps.iter().copied().map(step).collect();
             let path =
                 PathRequest { path: Path::Moves(moves).into(), stress: None, steps: Steps::All, tolerance: None };
             let reply = client.path(id, &path, &options).await;
-            let displacements = |states: Vec<State>| states.iter().map(|state| units(state.displacement)).collect();
+            let displacements =
+                |states: Vec<State>| states.iter().map(|state| units(state.displacement.unwrap())).collect();
             reply.map(|reply| Reply::Advanced(reply.sequence, displacements(reply.steps)))
         }
         Operation::Rename(label) => {
@@ -187,11 +188,11 @@ fn units(displacement: f64) -> i64 {
 }
 
 fn summary(sequence: u64, state: &State, label: Option<String>) -> Summary {
-    Summary { sequence, displacement: units(state.displacement), label }
+    Summary { sequence, displacement: units(state.displacement.unwrap()), label }
 }
 
 fn made(item: &HistoryItem) -> (u64, Made) {
     let Move { displacement, relative, .. } = item.step;
     let step = Step { relative, units: units(displacement.expect("all moves have a displacement")) };
-    (item.sequence, Made { step, displacement: units(item.state.displacement) })
+    (item.sequence, Made { step, displacement: units(item.state.displacement.unwrap()) })
 }

@@ -9,7 +9,7 @@ use stickslip_wire::session::Advance;
 
 use super::find_from_state;
 use crate::computations::prelude::*;
-use crate::simulation::{FarMove, WITH_MEMORY, annulus_warning, equal_peaks, follow, new_warnings, stresses};
+use crate::simulation::{FarMove, annulus_warning, equal_peaks, follow, new_warnings, reason_for, stresses};
 
 /// The reason for the exact solver on a contact with a history.
 const REASON: &str = "stored contacts use the exact solver";
@@ -68,8 +68,7 @@ pub fn make_moves(
     followed.map_err(|failure| if advance.relax.is_some() { without_step(failure) } else { failure })?;
     let followed_in = begin.elapsed();
     let stress = advance.stress.as_ref().map(|sampling| stresses(contact, sampling, stop)).transpose()?;
-    let reason = if contact.has_memory() { WITH_MEMORY } else { REASON };
-    let mut accuracy = accuracy(contact, timer, reason);
+    let mut accuracy = accuracy(contact, timer, reason_for(contact, REASON));
     // Gross slip erases the error of a curved path, but not that of the states before it.
     accuracy.force_error += path_error.max(contact.path_error()) - contact.path_error();
     let excess = excess_error(error, contact.tolerance(tolerance), advance.plan.curved());

@@ -198,8 +198,9 @@ impl Outcome for SimulateReply {
             }
             _ => {
                 let (state, first) = (|row: usize| &self.steps[row], self.steps.first());
-                let columns = state_columns(state).into_iter().chain(columns_of_some_states(first, state)).collect();
-                Some(Table::flat(self.steps.len(), columns))
+                let twists = self.steps.iter().any(|state| state.twist.is_some());
+                let more = columns_of_some_states(first, twists, state);
+                Some(Table::flat(self.steps.len(), state_columns(state).into_iter().chain(more).collect()))
             }
         }
     }
@@ -245,8 +246,8 @@ fn part(shown: &DisplayOptions, has_residual: bool, has_stress: bool) -> &'stati
 pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) -> [Column<'a>; 10] {
     let floats = |name, unit, of: fn(&State) -> f64| Column::floats(name, unit, move |row| of(state(row)));
     [
-        floats("displacement", "m", |state| state.displacement),
-        floats("force", "N", |state| state.force),
+        Column::floats("displacement", "m", move |row| state(row).displacement),
+        Column::floats("force", "N", move |row| state(row).force),
         floats("indentation", "m", |state| state.indentation),
         floats("normal_force", "N", |state| state.normal_force),
         floats("contact_radius", "m", |state| state.contact_radius),
@@ -261,9 +262,10 @@ pub fn state_columns<'a>(state: impl Fn(usize) -> &'a State + Copy + Send + 'a) 
 /// Name, unit and value of a column.
 type OptionalColumn = (&'static str, &'static str, fn(&State) -> Option<f64>);
 
-/// The columns of a state that not every contact has, if the first state has them.
+/// The columns of a state that not every contact has, if the first state has them; of a twist if any may have it.
 pub fn columns_of_some_states<'a>(
     first: Option<&State>,
+    twists: bool,
     state: impl Fn(usize) -> &'a State + Copy + Send + 'a,
 ) -> Vec<Column<'a>> {
     let columns: [OptionalColumn; 9] = [
@@ -277,7 +279,9 @@ pub fn columns_of_some_states<'a>(
         ("twist", "rad", |state| state.twist),
         ("torque", "N·m", |state| state.torque),
     ];
-    let has = |(_, _, of): &OptionalColumn| first.is_some_and(|first| of(first).is_some());
+    let has = |(name, _, of): &OptionalColumn| {
+        first.is_some_and(|first| of(first).is_some()) || twists && matches!(*name, "twist" | "torque")
+    };
     let column = |(name, unit, of): OptionalColumn| Column::floats(name, unit, move |row| of(state(row)));
     columns.into_iter().filter(has).map(column).collect()
 }
@@ -301,7 +305,7 @@ fn loop_of(curve: Vec<simulation::Point>, steps: &[State]) -> Plot {
     let twisted = steps.iter().any(|state| state.twist.is_some());
     let ends = steps.iter().map(|state| match (state.twist, state.torque) {
         (Some(twist), Some(torque)) => (twist, torque),
-        _ => (state.displacement, state.force),
+        _ => (state.displacement.unwrap_or_default(), state.force.unwrap_or_default()),
     });
     let curves = vec![Curve::line("", Colour::Blue, curve), Curve::dots("", Colour::Blue, ends)];
     let (x, y) = if twisted {

@@ -19,6 +19,8 @@ pub const INLINE_BODY: usize = 1024;
 pub const MOVE_COST: u64 = 1_000;
 /// What the limit of friction under twist takes.
 const TWIST_COST: u64 = 20_000_000;
+/// What a move takes that changes the load of a contact that is twisted.
+const TWISTED_MOVE_COST: u64 = 50_000_000;
 /// One curved move, which is followed in many small steps.
 const CURVED_MOVE_COST: u64 = 3_000_000;
 /// The contribution of one piece of the slip history of a sphere to the stress at one of many radii.
@@ -204,6 +206,11 @@ fn in_plane(simulation: &Simulation) -> Option<Nanoseconds> {
     Some(setup.map_or(0, |setup| of_rings(&setup, &plane.moves, &options, radii)))
 }
 
+/// The cost of moves that twist a contact, so many of them under a load that changes.
+pub fn of_twist(curved: usize) -> Nanoseconds {
+    TWIST_COST.saturating_add((curved as u64).saturating_mul(TWISTED_MOVE_COST))
+}
+
 /// The cost of a simulation.
 pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     if let Some(cost) = in_plane(simulation) {
@@ -212,7 +219,7 @@ pub fn of_simulation(simulation: &Simulation) -> Nanoseconds {
     let moves = simulation.plan.length();
     let radii = simulation.stress.as_ref().map_or(0, |stress| stress.length());
     let curved = simulation.plan.curved();
-    let twisted = if matches!(simulation.plan, Plan::Twist(_)) { TWIST_COST } else { 0 };
+    let twisted = if simulation.plan.twists() { of_twist(curved) } else { 0 };
     let exact = Work { moves, curved, depth: 0, radii, residual: simulation.residual }.cost(&simulation.setup.profile);
     let below = |task| of_subsurface(&simulation.setup.profile, task, moves);
     let steps = simulation.setup.friction.memory.as_ref().map_or(0, |_| moves as u64 * MEMORY_MOVE_COST);

@@ -24,7 +24,7 @@ pub use plane::{follow_in_plane, simulate_any};
 pub use prepare::{Anew, check, check_parsed, cost_of_preparation};
 pub use prepared_profiles::{ProfileCache, ProfileKey, Profiles};
 pub use run::{
-    WITH_MEMORY, contact, cycle_moves, equal_peaks, follow, refused_at, residual, sampled, simulate, spring_foundation,
+    contact, cycle_moves, equal_peaks, follow, reason_for, refused_at, residual, sampled, simulate, spring_foundation,
     stresses,
 };
 pub use solver::Solver;

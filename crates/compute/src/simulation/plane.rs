@@ -43,8 +43,8 @@ fn along_line(
     let SimulateReply { contact, steps, stress, accuracy, warnings, .. } = simulate(&line, stop).map_err(at_ellipse)?;
     let pair = |size: f64| direction.map(|component| size * component + 0.0);
     let state = |state: &State| PlanarState {
-        displacement: pair(state.displacement),
-        force: pair(state.force),
+        displacement: pair(state.displacement.unwrap_or_default()),
+        force: pair(state.force.unwrap_or_default()),
         indentation: state.indentation,
         normal_force: state.normal_force,
         contact_radius: state.contact_radius,

@@ -15,7 +15,9 @@ use crate::prelude::*;
 /// The reason for a solver that the request names.
 const AS_ASKED: &str = "as asked for";
 /// The reason for springs where the bodies have memory.
-pub const WITH_MEMORY: &str = "bodies with memory have no slip history: springs with memory step the path";
+const WITH_MEMORY: &str = "bodies with memory have no slip history: springs with memory step the path";
+/// The reason for springs where the load has changed under a twist.
+const WITH_TWIST: &str = "a load that changes under a twist changes its limit unevenly: springs of twist step the path";
 /// The reason for the exact solver where rings are asked for.
 const ALONG_ONE_LINE: &str =
     "in place of the rings asked for: all moves lead along one line, which has an exact solution";
@@ -34,6 +36,15 @@ pub fn simulate(simulation: &Simulation, stop: &dyn Stop) -> Result<SimulateRepl
     simulate_on(contact(simulation.setup.clone(), "/contact")?, simulation, timer, stop)
 }
 
+/// The reason for the solver that a contact has come to, or `usual`.
+pub fn reason_for<'a>(contact: &Contact, usual: &'a str) -> &'a str {
+    match contact.count_and_steps() {
+        Some(_) if contact.has_memory() => WITH_MEMORY,
+        Some(_) => WITH_TWIST,
+        None => usual,
+    }
+}
+
 /// Runs a simulation with the exact solver on a virgin contact, in place of the one that the simulation defines.
 ///
 /// # Errors
@@ -47,7 +58,6 @@ pub(super) fn simulate_on(
     let reason = match (simulation.solver, simulation.plan.curved()) {
         (Some(wire::Solver::Rings(_)), _) => ALONG_ONE_LINE,
         (Some(_), _) => AS_ASKED,
-        _ if contact.has_memory() => WITH_MEMORY,
         (None, 0) => "every move of this path has an exact solution, which is also the cheapest",
         (None, _) => "only this solver follows moves straight in a force under changing load, to the tolerance",
     };
@@ -63,6 +73,10 @@ pub(super) fn run<S: Solver>(
     stop: &dyn Stop,
 ) -> Result<SimulateReply, Failure> {
     let mut summary = solver.exact().initial_summary();
+    // Of a load curve this alone is known of twist.
+    if simulation.plan.twists() || matches!(solver.exact().profile(), Profile::LoadCurve(_)) {
+        summary.gross_slip_torque = solver.exact().gross_slip_torque();
+    }
     let protocol = equal_peaks(&simulation.plan, &solver)?;
     let mut largest = summary.contact_radius;
     let all = simulation.steps == Steps::All;
@@ -93,14 +107,12 @@ pub(super) fn run<S: Solver>(
     if simulation.residual {
         check_search(solver.exact().profile(), solver.depth(), stop)?;
     }
-    // The load of a contact that is twisted has stayed since; else it is that of none.
-    let twisted = solver.exact().is_twisted().then(|| solver.exact().twisting().ok()).flatten();
-    summary.gross_slip_torque = twisted.map(|twisting| twisting.normal_force());
     let stress = simulation.stress.as_ref().map(|sampling| stresses(&solver, sampling, stop)).transpose()?;
     let residual = simulation.residual.then(|| residual(&solver, stop)).transpose()?;
     let below = simulation.subsurface.as_ref().filter(|_| S::KIND == SolverKind::Exact);
     let below = below.map(|task| subsurface(solver.exact(), task, stop)).transpose()?;
     let (subsurface, subsurface_error) = below.unzip();
+    let reason = reason_for(solver.exact(), reason);
     let mut accuracy = Accuracy { subsurface_error, ..accuracy(&solver, timer, reason) };
     stop.check()?;
     let path_error = path_error.max(solver.path_error());
@@ -209,10 +221,11 @@ fn moves<'a>(
             };
             return Ok(Box::new(moves(plan, contact, protocol)?.map(take)));
         }
-        Plan::Twist(twist) => return Ok(Box::new(twist.moves.iter().map(|step| (Move::default(), *step)))),
         Plan::Moves(moves) => Box::new(moves.iter().copied()),
         Plan::Displacement(targets) => Box::new(targets.iter().map(|target| Move::displacement(*target))),
         Plan::Force(targets) => Box::new(targets.iter().map(|target| Move::force(*target))),
+        Plan::Twist(targets) => Box::new(targets.iter().map(|target| Move::twist(*target))),
+        Plan::Torque(targets) => Box::new(targets.iter().map(|target| Move::torque(*target))),
         Plan::FallingAmplitude(fall) => {
             let amplitude = fall.amplitude.unwrap_or_else(|| contact.gross_slip_displacement());
             Box::new(protocol::falling_amplitude(fall.reversals, amplitude).map(Move::displacement))
@@ -253,7 +266,6 @@ fn place(plan: &Plan, index: usize, step: Option<&Move>, error: &mechanics::Erro
         (Plan::Cycles(_), mechanics::Error::ForceExceedsFriction { .. }) => Some(Quantity::Force),
         (Plan::Cycles(_), mechanics::Error::BeyondProfile { .. }) => Some(Quantity::ContactRadius),
         (Plan::Cycles(_), _) => quantity(error),
-        (Plan::Twist(_), _) => quantity(error).filter(|known| matches!(known, Quantity::Twist | Quantity::Torque)),
         _ => quantity(error).filter(|quantity| step.is_some_and(|step| step.names(*quantity))),
     };
     plan.place_of(index, named)

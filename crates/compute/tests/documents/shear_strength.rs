@@ -75,7 +75,7 @@ fn what_a_shear_strength_does_not_allow_is_refused_at_its_place() {
         ("invalid_input", place, "not available with a shear strength"),
     );
     for (route, rest) in [
-        ("/cycle", json!({"drive": {"displacement": 0.1}})),
+        ("/cycle", json!({"drive": {"displacement": 0.1}, "best_load": {}})),
         ("/wear", json!({"drive": {"displacement": 0.1}, "hold": "indentation"})),
         ("/protocols", json!({"reversals": 4})),
     ] {

@@ -57,6 +57,8 @@ fn columns(task: &CycleTask, cycle: &SteadyCycle) {
 fn signs(cycle: &SteadyCycle) {
     let SteadyCycle { displacement_amplitude, force_amplitude, dissipated_energy, max_elastic_energy, .. } = cycle;
     let SteadyCycle { secant_stiffness, tangent_stiffness, stick_radius, .. } = cycle;
+    let [displacement_amplitude, force_amplitude] =
+        [displacement_amplitude, force_amplitude].map(|amplitude| amplitude.as_ref().unwrap());
     let numbers = [displacement_amplitude, force_amplitude, dissipated_energy, max_elastic_energy];
     let numbers = numbers.into_iter().chain([secant_stiffness, tangent_stiffness, stick_radius]);
     let optional = [&cycle.machine_amplitude, &cycle.loss_factor, &cycle.sliding_ratio];
@@ -72,8 +74,12 @@ fn signs(cycle: &SteadyCycle) {
 fn work_of_harmonics(cycle: &SteadyCycle, drive: Drive, error: f64) {
     let Some(first) = cycle.harmonics.as_ref().and_then(|harmonics| harmonics.first()) else { return };
     let (work, unit) = match drive {
-        Drive::Displacement(amplitude) => (-PI * amplitude * first.quadrature, amplitude * cycle.force_amplitude),
-        Drive::Force(amplitude) => (PI * amplitude * first.quadrature, amplitude * cycle.displacement_amplitude),
+        Drive::Displacement(amplitude) => {
+            (-PI * amplitude * first.quadrature, amplitude * cycle.force_amplitude.unwrap())
+        }
+        Drive::Force(amplitude) => {
+            (PI * amplitude * first.quadrature, amplitude * cycle.displacement_amplitude.unwrap())
+        }
     };
     let off = (work - cycle.dissipated_energy).abs();
     assert!(off <= 4.0 * PI * (WORK + error) * unit, "{off:e} of {unit:e}: {cycle:?}");

@@ -2,6 +2,7 @@
 
 use crate::contact::Contact;
 use crate::contact::normal::mean_pressure;
+use crate::contact::twist::Twist;
 
 /// A relative slope of g above this is the edge of a punch, whose radius is exact.
 const MAX_STEEPNESS: f64 = 1e4;
@@ -50,6 +51,13 @@ impl Contact {
         if let Some(bodies) = &self.viscoelastic {
             let (path_error, force_error) = (bodies.path_error, bodies.force_error + bodies.path_error);
             return ErrorEstimate { path_error, force_error, stress_error: 0.0 };
+        }
+        if let Some(Twist { springs: Some(springs), shear_modulus, .. }) = self.twist() {
+            let law = self.twist_law(*shear_modulus);
+            let unit = self.friction * self.summary().unit_pressure();
+            let force_error = springs.force_error(&law);
+            let stress_error = force_error + springs.hoop_error(&law) / unit;
+            return ErrorEstimate { path_error: springs.path_error, force_error, stress_error };
         }
         if let Some(twist) = self.twist() {
             // The limit of twist is an integral over that of pressure: of a table, both have its relative error.

@@ -16,6 +16,7 @@ use super::adhesion::{Adhesion, Bond, Branch, Control, tension};
 use super::normal;
 use super::state::{Move, Normal, State};
 use super::twist::Twist;
+use super::viscoelastic::LEAST_TOLERANCE;
 use crate::cells::shape::Reach;
 use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
@@ -193,9 +194,14 @@ impl Contact {
     }
 
     /// As [`Contact::apply_while`]: along the surface at a constant load, or to another load before the first shear.
-    pub(crate) fn apply_by_law(&mut self, step: &Move) -> Result<(), Error> {
+    pub(crate) fn apply_by_law(
+        &mut self,
+        step: &Move,
+        tolerance: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
         if step.twists() || self.is_twisted() {
-            return self.apply_twist(step);
+            return self.apply_twist(step, tolerance.max(LEAST_TOLERANCE), keep_going);
         }
         let tangential = self.tangential_path(step)?;
         let moved = match tangential {

@@ -10,15 +10,18 @@
 //! | 8 x 8 | displacement (two parts), normal force, friction work (two parts), errors of curved paths (three) |
 //! | the rest | the slip history, see `slip_history/packed.rs`; of a contact with a law of its own shear strength, |
 //! | | work of adhesion, level (two parts), and of adhesion its bond and loss come before that of its tangential |
-//! | | problem; of a contact that is twisted, level and history of the twist, and the sign of the error before it; |
+//! | | problem; of a contact that is twisted, level, whether it has springs, and these or the history of the twist, |
+//! | | and the sign of the error before it; |
 //! | | of bodies with memory their springs are in its place |
 
 use super::Contact;
 use super::adhesion::Bond;
 use super::law::Interface;
+use super::twist::Twist;
 use crate::numerics::packing::{Packed, Reader};
 use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
+use crate::springs::twist::TwistSprings;
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
@@ -60,7 +63,10 @@ impl Contact {
     pub fn packed_length(&self) -> usize {
         let history = match self.law.as_deref() {
             None if self.viscoelastic.is_some() => 0,
-            Some(Interface { twist: Some(twist), .. }) => 2 * size_of::<f64>() + twist.contact.history.packed_length(),
+            Some(Interface { twist: Some(Twist { springs: Some(_), .. }), .. }) => {
+                3 * size_of::<f64>() + TwistSprings::packed_length()
+            }
+            Some(Interface { twist: Some(twist), .. }) => 3 * size_of::<f64>() + twist.contact.history.packed_length(),
             Some(law) => {
                 let adhesion = if law.adhesion.is_some() { 2 } else { 0 };
                 let tangential = self.tangential().map_or(0, |contact| contact.history.packed_length());
@@ -89,7 +95,11 @@ impl Contact {
         match self.law.as_deref() {
             Some(Interface { twist: Some(twist), .. }) => {
                 self.history.edge().level.pack(&mut bytes);
-                twist.contact.history.pack(&mut bytes);
+                f64::from(u8::from(twist.springs.is_some())).pack(&mut bytes);
+                match &twist.springs {
+                    Some(springs) => springs.pack(&mut bytes),
+                    None => twist.contact.history.pack(&mut bytes),
+                }
             }
             Some(law) => {
                 [law.strength, self.work_of_adhesion()].iter().for_each(|value| value.pack(&mut bytes));
@@ -144,7 +154,7 @@ impl Contact {
             contact.law = None;
             let history = SlipHistory::new(&Coulomb(&contact.indenter), Packed::unpack(&mut reader)?);
             contact.history = history.at_position(contact.scaled(contact.displacement));
-            return contact.with_twist_of(Packed::unpack(&mut reader)?);
+            return contact.with_twist_of(&mut reader);
         }
         if self.law.as_ref().is_none_or(|law| law.twist.is_some()) {
             contact.law = None;

@@ -210,6 +210,9 @@ impl Contact {
     /// Number of straight pieces that the slip history consists of.
     #[must_use]
     pub fn memory_depth(&self) -> usize {
+        if let Some(springs) = self.twist().and_then(|twist| twist.springs.as_ref()) {
+            return springs.count();
+        }
         let twist = self.twist().map(|twist| &twist.contact);
         twist.or(self.tangential()).unwrap_or(self).history.pieces().len()
     }
@@ -219,7 +222,9 @@ impl Contact {
     pub fn memory_bytes(&self) -> usize {
         let own = size_of::<Contact>() + size_of::<Indenter>() + self.history.heap_bytes();
         let twist = self.twist().map(|twist| &twist.contact);
-        own + twist.or(self.tangential()).map_or(0, Contact::memory_bytes)
+        let springs = self.twist().and_then(|twist| twist.springs.as_ref()).map_or(0, |springs| springs.heap_bytes());
+        own + springs
+            + twist.or(self.tangential()).map_or(0, Contact::memory_bytes)
             + self.viscoelastic.as_ref().map_or(0, |bodies| bodies.heap_bytes())
     }
 

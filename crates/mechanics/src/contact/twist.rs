@@ -3,18 +3,20 @@
 //! At a constant load the twist is a contact of its own, pressed into the limit of friction under twist
 //! ([`TwistLimit`](crate::profile::TwistLimit)): its displacement is the angle, rad, and its tangential force the
 //! torque, N m. It is made by the first twist, kept beside the contact, and gone when that lifts off. Twist couples
-//! with nothing, so that this is exact for any pair of isotropic bodies.
+//! with nothing, so that this is exact for any pair of isotropic bodies. Under a load that changes springs step it from
+//! then on ([`TwistSprings`]).
 
 use std::sync::Arc;
 
 use super::Contact;
 use super::law::Interface;
 use super::normal;
-use super::state::{Move, State, Tangential};
+use super::state::{Move, Regime, State, Tangential};
 use crate::cells::shape::Reach;
 use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::packing::{Packed, Reader};
 use crate::path::curved_path::NormalPath;
 use crate::profile::{MOST_CELLS, Profile, Twisted};
 use crate::range;
@@ -22,6 +24,7 @@ use crate::range::Quantity;
 use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
+use crate::springs::twist::{TwistLaw, TwistPath, TwistSprings, gross_slip_torque};
 
 /// The twist of a contact.
 #[derive(Clone, Debug)]
@@ -31,7 +34,33 @@ pub(crate) struct Twist {
     /// The same levels over x: what the hoop stress is summed over.
     hoop: Arc<Indenter>,
     /// 1/G = 1/G_1 + 1/G_2, Pa.
-    shear_modulus: f64,
+    pub(crate) shear_modulus: f64,
+    /// Once the load has changed: they answer in place of the contact.
+    pub(crate) springs: Option<Box<TwistSprings>>,
+}
+
+impl Twist {
+    /// Whether it carries a torque anywhere.
+    fn carries(&self) -> bool {
+        match &self.springs {
+            Some(springs) => springs.carries(),
+            None => !self.contact.history.is_virgin(),
+        }
+    }
+
+    /// Moves the contact; the friction work so far.
+    fn at_constant_load(&mut self, path: TwistPath) -> Result<DoubleDouble, Error> {
+        let target = match path {
+            TwistPath::Angle { to, .. } => Tangential::Displacement(to),
+            TwistPath::Torque { to, .. } => Tangential::Force(to),
+        };
+        let done = self.contact.apply(&Move { tangential: Some(target), ..Move::default() });
+        done.map_err(|error| match error {
+            Error::ForceExceedsFriction { target, limit, .. } => Error::TorqueExceedsFriction { target, limit },
+            other => other,
+        })?;
+        Ok(self.contact.dissipated)
+    }
 }
 
 impl Contact {
@@ -52,7 +81,7 @@ impl Contact {
     }
 
     /// The contact whose displacement is the angle of this one, rad, and whose tangential force is its torque, N m, in
-    /// the present state and at the present load.
+    /// the present state and at the present load; without a history where the load has changed under a twist.
     ///
     /// # Errors
     /// [`Error::ShearStrength`] and [`Error::Adhesive`]; [`Error::LineContact`] and [`Error::NoStressField`] for a
@@ -74,9 +103,29 @@ impl Contact {
     /// ```
     pub fn twisting(&self) -> Result<Contact, Error> {
         match self.twist() {
-            Some(twist) => Ok(twist.contact.clone()),
+            Some(twist) if twist.springs.is_none() => Ok(twist.contact.clone()),
+            Some(_) => Ok(Contact { law: None, ..self.clone() }.new_twist()?.contact),
             None => Ok(self.new_twist()?.contact),
         }
+    }
+
+    /// The torque at which the contact slides round at its present load, N m: (pi/2) mu E* int X^2 dy, which asks for the
+    /// load curve alone. `None` where the contact is not round, or slides by another law.
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// // A ball: 3 pi/16 of mu F_N a.
+    /// let limit = 3.0 * std::f64::consts::PI / 16.0 * 0.5 * contact.normal_force() * contact.contact_radius();
+    /// assert!((contact.gross_slip_torque().unwrap() / limit - 1.0).abs() < 1e-13);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn gross_slip_torque(&self) -> Option<f64> {
+        let round = self.profile().has_stress_field() && self.profile().line().is_none();
+        let plain = self.shear_strength() <= 0.0 && self.adhesion().is_none() && !self.has_memory();
+        let known = plain && (round || matches!(self.profile(), Profile::LoadCurve(_)));
+        let traction = self.friction * self.elasticity.e_star();
+        known.then(|| gross_slip_torque(&self.indenter, traction, self.indentation()))
     }
 
     fn new_twist(&self) -> Result<Twist, Error> {
@@ -129,87 +178,198 @@ impl Contact {
             law: None,
             viscoelastic: None,
         };
-        Ok(Twist { contact, hoop: Arc::new(Indenter::new(Profile::Twist(hoop))), shear_modulus })
+        Ok(Twist { contact, hoop: Arc::new(Indenter::new(Profile::Twist(hoop))), shear_modulus, springs: None })
     }
 
-    /// As [`Contact::apply_while`], where the contact is twisted or has been: by an angle or a torque at a constant
-    /// load, or off.
-    pub(super) fn apply_twist(&mut self, step: &Move) -> Result<(), Error> {
+    /// What its springs of twist are made of.
+    pub(super) fn twist_law(&self, shear_modulus: f64) -> TwistLaw<'_> {
+        let unit = self.friction * self.elasticity.e_star() / (2.0 * std::f64::consts::PI * shear_modulus);
+        TwistLaw { indenter: &self.indenter, unit, shear_modulus }
+    }
+
+    /// As [`Contact::apply_while`], where the contact is twisted or has been.
+    pub(super) fn apply_twist(
+        &mut self,
+        step: &Move,
+        tolerance: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
         let normal = self.normal_path(step)?;
-        let to = match normal {
-            NormalPath::Indentation { from, to } => (from != to).then_some(to),
-            NormalPath::Force { to, .. } => Some(self.indentation_for(to)),
-        };
-        let target = match step.tangential {
-            Some(Tangential::Twist(angle)) => Some(Tangential::Displacement(angle)),
-            Some(Tangential::Torque(torque)) => Some(Tangential::Force(torque)),
-            Some(_) => return Err(Error::TwistWithShift),
-            None => None,
-        };
-        let Some(target) = target else {
-            let Some(to) = to else { return Ok(()) };
-            let twist = self.twist().map(|twist| &twist.contact);
-            // Whatever way the contact opens, what the twist has stored is lost by slip.
-            let lost = twist.map_or(0.0, |contact| contact.state().elastic_energy);
-            let carries = twist.is_some_and(|contact| !contact.history.is_virgin());
-            if carries && to.value() > 0.0 {
-                return Err(Error::LoadMustBeConstant);
+        let changes = !matches!(normal, NormalPath::Indentation { from, to } if from == to);
+        let [angle, torque] = self.twist().map_or([0.0; 2], |twist| self.angle_and_torque(twist));
+        let absolute = |from: f64, target: f64| if step.relative { from + target } else { target };
+        let path = match step.tangential {
+            Some(Tangential::Twist(target)) => {
+                TwistPath::Angle { from: angle, to: range::TWIST.check(absolute(angle, target))? }
             }
-            self.law = None;
-            self.dissipated = self.dissipated + DoubleDouble::from(lost);
-            return self.apply_visited(step, 1.0, &|| true, &mut |_, _| ());
+            Some(Tangential::Torque(target)) => {
+                TwistPath::Torque { from: torque, to: range::TORQUE.check(absolute(torque, target))? }
+            }
+            Some(_) => return Err(Error::TwistWithShift),
+            None => TwistPath::Angle { from: angle, to: angle },
         };
-        if to.is_some() {
-            return Err(Error::LoadMustBeConstant);
+        if changes {
+            return self.twist_under_load(step, (normal, path), tolerance, keep_going);
         }
-        if self.history.edge().level.value() <= 0.0 {
-            return match target {
-                Tangential::Force(target) if target.abs() > 0.0 => {
+        if step.tangential.is_none() {
+            return Ok(());
+        }
+        let here = self.history.edge().level.value();
+        if here <= 0.0 {
+            return match path {
+                TwistPath::Torque { to: target, .. } if target.abs() > 0.0 => {
                     Err(Error::TorqueExceedsFriction { target, limit: 0.0 })
                 }
                 // Apart, the indenter turns without anything to count from.
                 _ => Ok(()),
             };
         }
-        let mut twist = match self.twist() {
-            Some(twist) => twist.clone(),
-            None => self.new_twist()?,
-        };
-        let absolute = |from: f64, target: f64| if step.relative { from + target } else { target };
-        match target {
-            Tangential::Displacement(angle) => range::TWIST.check(absolute(twist.contact.displacement(), angle))?,
-            Tangential::Force(torque) => range::TORQUE.check(absolute(twist.contact.force(), torque))?,
-            _ => 0.0,
-        };
-        let done = twist.contact.apply(&Move { tangential: Some(target), relative: step.relative, ..Move::default() });
-        done.map_err(|error| match error {
-            Error::ForceExceedsFriction { target, limit, .. } => Error::TorqueExceedsFriction { target, limit },
-            other => other,
-        })?;
-        self.dissipated = twist.contact.dissipated;
-        self.law = Some(Box::new(Interface::of_twist(twist)));
+        let is_new = !self.is_twisted();
+        let new = is_new.then(|| self.new_twist()).transpose()?.map(|twist| Box::new(Interface::of_twist(twist)));
+        let Some(mut law) = new.or_else(|| self.law.take()) else { return Ok(()) };
+        let followed = law.twist.as_mut().map_or(Ok(self.dissipated), |twist| {
+            let Some(springs) = &mut twist.springs else { return twist.at_constant_load(path) };
+            let law = self.twist_law(twist.shear_modulus);
+            let before = springs.work();
+            springs.follow(&law, &|_| here, path, tolerance, keep_going)?;
+            Ok(self.dissipated + DoubleDouble::from(springs.work() - before))
+        });
+        if followed.is_ok() || !is_new {
+            self.law = Some(law);
+        }
+        self.dissipated = followed?;
         Ok(())
     }
 
-    /// The same twisted, with this history of it; `None` if it cannot be.
-    pub(super) fn with_twist_of(mut self, history: SlipHistory) -> Option<Contact> {
+    fn angle_and_torque(&self, twist: &Twist) -> [f64; 2] {
+        match &twist.springs {
+            Some(springs) => [springs.angle(), springs.results(&self.twist_law(twist.shear_modulus))[0]],
+            None => [twist.contact.displacement(), twist.contact.force()],
+        }
+    }
+
+    /// The same with a load that changes: by springs once anything is twisted.
+    fn twist_under_load(
+        &mut self,
+        step: &Move,
+        (normal, path): (NormalPath, TwistPath),
+        tolerance: f64,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<(), Error> {
+        let mut after = Contact { law: None, ..self.clone() };
+        after.apply_visited(&Move { tangential: None, ..*step }, 1.0, &|| true, &mut |_, _| ())?;
+        let [here, end] = [&*self, &after].map(|contact| contact.history.edge().level.value());
+        let twist = self.twist();
+        let carries = twist.is_some_and(Twist::carries);
+        if end <= 0.0
+            && let TwistPath::Torque { to: target, .. } = path
+            && target.abs() > 0.0
+        {
+            return Err(Error::TorqueExceedsFriction { target, limit: 0.0 });
+        }
+        let turns = matches!(path, TwistPath::Angle { from, to } if from.to_bits() != to.to_bits());
+        if end <= 0.0 && !(carries && turns) {
+            // Whatever way the contact opens, what a twist that stays has stored is lost by slip.
+            let stored = if carries { self.state().elastic_energy } else { 0.0 };
+            after.dissipated = after.dissipated + DoubleDouble::from(stored);
+            *self = after;
+            return Ok(());
+        }
+        if !carries && step.tangential.is_none() {
+            after.law = twist.map(|_| after.new_twist()).transpose()?.map(|twist| Box::new(Interface::of_twist(twist)));
+            *self = after;
+            return Ok(());
+        }
+        let mut twist = match twist {
+            Some(twist) => twist.clone(),
+            None => after.new_twist()?,
+        };
+        let law = self.twist_law(twist.shear_modulus);
+        let reach = [here, end].map(|level| self.indenter.radius(level.max(0.0))).into_iter().fold(0.0, f64::max);
+        let mut springs = twist.springs.take().unwrap_or_else(|| {
+            let (indenter, square) = (&twist.contact.indenter, self.history.edge().square.value());
+            let deflection = |x: f64| {
+                if !carries {
+                    return 0.0;
+                }
+                let level = indenter.level(x * x * x / (3.0 * square));
+                twist.contact.history.deflection(DoubleDouble::from(level))
+            };
+            let angle = if carries { twist.contact.displacement() } else { 0.0 };
+            Box::new(TwistSprings::new(&law, [here.max(0.0), reach], angle, deflection))
+        });
+        let before = springs.work();
+        let level = |part: f64| match normal {
+            NormalPath::Indentation { to, .. } if part < 1.0 => here.max(0.0) + part * (to.value() - here.max(0.0)),
+            NormalPath::Indentation { to, .. } => to.value(),
+            NormalPath::Force { from, to } if part < 1.0 => self.indentation_for(from + part * (to - from)).value(),
+            NormalPath::Force { .. } => end,
+        };
+        springs.follow(&law, &level, path, tolerance, keep_going)?;
+        after.dissipated = after.dissipated + DoubleDouble::from(springs.work() - before);
+        if end > 0.0 {
+            after.path_error = springs.path_error;
+            twist.springs = Some(springs);
+            after.law = Some(Box::new(Interface::of_twist(twist)));
+        }
+        *self = after;
+        Ok(())
+    }
+
+    /// The same twisted, with its history or its springs from packed bytes; `None` if it cannot be.
+    pub(super) fn with_twist_of(mut self, reader: &mut Reader<'_>) -> Option<Contact> {
         let mut twist = self.new_twist().ok()?;
-        twist.contact.displacement = history.position();
-        twist.contact.history = history;
+        if f64::unpack(reader)? > 0.0 {
+            let springs = TwistSprings::unpack(reader, &self.twist_law(twist.shear_modulus))?;
+            twist.springs = Some(Box::new(springs));
+        } else {
+            let history = SlipHistory::unpack(reader)?;
+            twist.contact.displacement = history.position();
+            twist.contact.history = history;
+        }
         self.law = Some(Box::new(Interface::of_twist(twist)));
         Some(self)
     }
 
+    /// The radius, m, of a radius of [`Contact::twisting`], m, whose springs are even over x^3/(3 a^2).
+    ///
+    /// ```
+    #[doc = include_str!("../example.txt")]
+    /// let radius = contact.contact_radius();
+    /// assert!((contact.radius_of_twist(radius / 3.0) / radius - 1.0).abs() < 1e-15);
+    /// # Ok::<(), Error>(())
+    /// ```
+    #[must_use]
+    pub fn radius_of_twist(&self, radius: f64) -> f64 {
+        let edge = self.contact_radius();
+        if edge > 0.0 { edge * (3.0 * radius / edge).cbrt() } else { 0.0 }
+    }
+
     /// The state of a contact that is twisted, by that of it without its twist.
     pub(super) fn with_twist(&self, state: State) -> State {
-        let Some(Twist { contact, .. }) = self.twist() else { return state };
+        let Some(Twist { contact, springs, shear_modulus, .. }) = self.twist() else { return state };
+        if let Some(springs) = springs {
+            let [torque, elastic_energy] = springs.results(&self.twist_law(*shear_modulus));
+            let (stick_radius, regime) = match springs.slip_from {
+                Some(from) if from <= 0.0 => (0.0, Regime::GrossSlip),
+                Some(from) if from < state.contact_radius => (from, Regime::PartialSlip),
+                _ => (state.contact_radius, Regime::Stick),
+            };
+            return State {
+                twist: Some(springs.angle()),
+                torque: Some(torque),
+                stick_radius,
+                regime,
+                elastic_energy,
+                memory_depth: springs.count(),
+                ..state
+            };
+        }
         let own = contact.state();
-        // xi = x^3/(3 a^2), that of the edge a/3.
-        let share = (own.stick_radius / own.contact_radius).cbrt();
         State {
             twist: Some(own.displacement),
             torque: Some(own.force),
-            stick_radius: share * state.contact_radius,
+            stick_radius: self.radius_of_twist(own.stick_radius),
             regime: own.regime,
             dissipated_energy: own.dissipated_energy,
             elastic_energy: own.elastic_energy,
@@ -228,7 +388,11 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn hoops(&self, radii: &[f64]) -> Vec<f64> {
-        let Some(Twist { contact, hoop, shear_modulus }) = self.twist() else { return vec![0.0; radii.len()] };
+        let Some(Twist { contact, hoop, shear_modulus, springs }) = self.twist() else { return vec![0.0; radii.len()] };
+        if let Some(springs) = springs {
+            let law = self.twist_law(*shear_modulus);
+            return radii.iter().map(|radius| springs.hoop(&law, *radius)).collect();
+        }
         let over_x = Contact {
             indenter: Arc::clone(hoop),
             elasticity: Elasticity::of_springs(*shear_modulus),

@@ -12,8 +12,8 @@ use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
 use crate::viscoelastic::{Course, Leg, Material, Prony, Viscoelastic};
 
-/// The least tolerance of steps in time, of the size of the error that the number of springs leaves.
-const LEAST_TOLERANCE: f64 = 1e-6;
+/// The least tolerance of springs, of the size of the error that their number leaves.
+pub(super) const LEAST_TOLERANCE: f64 = 1e-6;
 
 /// ```
 /// use std::sync::Arc;
@@ -54,16 +54,17 @@ impl Contact {
         self.viscoelastic.as_ref().is_some_and(|bodies| bodies.beyond)
     }
 
-    /// Springs across the radius, and steps so far, if the bodies have memory.
+    /// Springs across the radius, and steps so far, if the bodies have memory or the load has changed under a twist.
     #[must_use]
     pub fn count_and_steps(&self) -> Option<(usize, usize)> {
-        self.viscoelastic.as_ref().map(|bodies| (bodies.count(), bodies.steps))
+        let twisted = self.twist().and_then(|twist| twist.springs.as_ref()).map(|rows| (rows.count(), rows.steps));
+        self.viscoelastic.as_ref().map(|bodies| (bodies.count(), bodies.steps)).or(twisted)
     }
 
-    /// The tolerance of a move for one that was asked for: springs with memory are not finer than 1e-6.
+    /// The tolerance of a move for one that was asked for: springs of memory or twist are not finer than 1e-6.
     #[must_use]
     pub fn tolerance(&self, asked: f64) -> f64 {
-        if self.has_memory() { asked.max(LEAST_TOLERANCE) } else { asked }
+        if self.count_and_steps().is_some() { asked.max(LEAST_TOLERANCE) } else { asked }
     }
 
     /// Refuses what is defined for elastic bodies alone, by its name.

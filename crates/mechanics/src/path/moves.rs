@@ -88,7 +88,7 @@ impl Contact {
             return Err(Error::NoMemory);
         }
         if self.law.is_some() || step.twists() {
-            self.apply_by_law(step)?;
+            self.apply_by_law(step, tolerance, keep_going)?;
             visit(1.0, self);
             return Ok(());
         }

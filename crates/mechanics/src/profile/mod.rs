@@ -34,7 +34,7 @@ pub use load_curve::LoadCurve;
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
 pub use twist_limit::TwistLimit;
-pub(crate) use twist_limit::{MOST_CELLS, Twisted};
+pub(crate) use twist_limit::{MOST_CELLS, Twisted, complete};
 
 use crate::cells::Cells;
 use crate::cells::parabola::Parabola;

@@ -189,7 +189,7 @@ fn divide((from, to): (DoubleDouble, DoubleDouble), first: Powers, mut made: imp
 }
 
 /// K and K - E at the complementary modulus k', by the arithmetic-geometric mean (Abramowitz & Stegun 1972, 17.6).
-fn complete(k: f64) -> [f64; 2] {
+pub(crate) fn complete(k: f64) -> [f64; 2] {
     let mut sum = 0.5 * (1.0 - k) * (1.0 + k);
     let (mut mean, mut other, mut power) = (1.0, k, 0.5);
     while mean - other > 1e-9 * mean {

@@ -61,10 +61,10 @@ pub enum Error {
     /// A normal target of a contact whose bulk stress moves the stick zone.
     #[error("a bulk stress needs a constant normal force: leave the normal target out")]
     BulkNeedsConstantLoad,
-    /// A load that changes while a contact with a shear strength, or one that is twisted, carries shear.
+    /// A load that changes while a contact with a shear strength carries shear.
     #[error(
-        "with a shear strength, and under a twist, the load must stay constant while the contact carries shear stress: \
-         change the load before"
+        "with a shear strength the load must stay constant while the contact carries shear stress: change the load \
+         before"
     )]
     LoadMustBeConstant,
     /// What knows Coulomb's law alone.

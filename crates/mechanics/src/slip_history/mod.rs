@@ -168,6 +168,12 @@ impl SlipHistory {
         SlipHistory { pieces, edge, ..SlipHistory::default() }
     }
 
+    /// w at a level, m.
+    pub(super) fn deflection(&self, level: DoubleDouble) -> f64 {
+        let piece = self.pieces.iter().rfind(|piece| piece.inner.level <= level).or(self.pieces.first());
+        piece.map_or(0.0, |piece| (piece.line.at(level) + self.shift()).value())
+    }
+
     /// Bytes held beyond the struct itself.
     pub(super) fn heap_bytes(&self) -> usize {
         self.pieces.capacity() * size_of::<Piece>()

@@ -7,6 +7,7 @@
 mod estimate;
 mod shear_evaluation;
 mod stress;
+pub(crate) mod twist;
 
 use std::cell::Cell;
 use std::sync::Arc;

@@ -40,29 +40,9 @@ impl Springs {
         (self.indentation - self.virgin.indenter.level(self.contact_radius())).max(0.0)
     }
 
-    /// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from
-    /// spring to spring and on to `at_edge`; level from the centre to the first spring beyond it.
     fn stress(&self, radius: f64, at_edge: f64, displacement: impl Fn(&Spring) -> f64) -> f64 {
-        let edge = self.contact_radius();
-        if radius > edge || self.indentation <= 0.0 {
-            return 0.0;
-        }
-        let root = |x: f64| ((x - radius) * (x + radius)).max(0.0).sqrt();
-        let mut sum = if at_edge.abs() > 0.0 { at_edge / root(edge) } else { 0.0 };
-        let mut inner: Option<(f64, f64)> = None;
-        let nodes = self.in_contact().map(|spring| (spring.radius, displacement(spring))).chain([(edge, at_edge)]);
-        for (x, u) in nodes {
-            if let Some((x0, u0)) = inner
-                && x > radius
-                && x > x0
-                && x0 > 0.0
-            {
-                let from = x0.max(radius);
-                sum -= (u - u0) / (x - x0) * ((x + root(x)) / (from + root(from))).ln();
-            }
-            inner = Some((x, u));
-        }
-        sum / std::f64::consts::PI
+        let nodes = self.in_contact().map(|spring| (spring.radius, displacement(spring)));
+        if self.indentation > 0.0 { from_displacements(nodes, self.contact_radius(), at_edge, radius) } else { 0.0 }
     }
 
     /// Tangential displacement of the surface, m, at a radius, m: each spring moves its own cell.
@@ -102,4 +82,27 @@ impl Springs {
             .collect();
         Some(Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).is_finite()))
     }
+}
+
+/// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring to
+/// spring and on to `at_edge`; level from the centre to the first spring beyond it.
+pub(super) fn from_displacements(nodes: impl Iterator<Item = (f64, f64)>, edge: f64, at_edge: f64, radius: f64) -> f64 {
+    if radius > edge {
+        return 0.0;
+    }
+    let root = |x: f64| ((x - radius) * (x + radius)).max(0.0).sqrt();
+    let mut sum = if at_edge.abs() > 0.0 { at_edge / root(edge) } else { 0.0 };
+    let mut inner: Option<(f64, f64)> = None;
+    for (x, u) in nodes.chain([(edge, at_edge)]) {
+        if let Some((x0, u0)) = inner
+            && x > radius
+            && x > x0
+            && x0 > 0.0
+        {
+            let from = x0.max(radius);
+            sum -= (u - u0) / (x - x0) * ((x + root(x)) / (from + root(from))).ln();
+        }
+        inner = Some((x, u));
+    }
+    sum / std::f64::consts::PI
 }

@@ -8,6 +8,7 @@ pub use map::{FrettingMap, LoadSpan};
 pub use reply::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 pub use studies::{BestLoad, BestLoadStudy, FrequencyResponse, LoadCurve, Resonance, ResonancePoint};
 
+use stickslip_mechanics::Error;
 use stickslip_mechanics::cycle;
 use stickslip_mechanics::cycle::OscillatingLoad;
 
@@ -39,7 +40,7 @@ pub struct CycleRequest {
     /// Only a displacement is driven, and of the other options only `harmonics` is allowed. At most 100 000 cycles.
     #[schema(value_type = Option<f64>)]
     pub frequency: Option<Amplitudes> = Within(FREQUENCIES, FREQUENCY),
-    /// A machine in series with the contact: a displacement amplitude is then that of the machine.
+    /// A machine in series with the contact: an amplitude of displacement or twist is then that of the machine.
     pub machine: Option<Machine>,
     /// Ask for the harmonics from the first to this one.
     pub harmonics: Option<usize> = HARMONICS,
@@ -63,7 +64,7 @@ pub struct CycleRequest {
 
 /// A machine in series with the contact.
 pub struct Machine: Copy {
-    /// Its stiffness, N/m.
+    /// Its stiffness, N/m; with `twist` or `torque` N·m/rad.
     pub stiffness: f64 = range::MACHINE_STIFFNESS,
 }
 
@@ -88,6 +89,12 @@ pub enum CycleDrive {
     /// Amplitude of the tangential force, N; below μ F_N.
     #[schema(value_type = f64)]
     "force" => Force(Amplitudes) = Within(CYCLE_AMPLITUDES, Range { min: 0.0, ..range::FORCE }),
+    /// Amplitude of the angle of twist, rad: of the indenter or, with `machine`, of the machine.
+    #[schema(value_type = f64)]
+    "twist" => Twist(Amplitudes) = Within(CYCLE_AMPLITUDES, Range { min: 0.0, ..range::TWIST }),
+    /// Amplitude of the torque, N·m; below that of gross slip.
+    #[schema(value_type = f64)]
+    "torque" => Torque(Amplitudes) = Within(CYCLE_AMPLITUDES, Range { min: 0.0, ..range::TORQUE }),
 }
 }
 
@@ -136,7 +143,10 @@ impl CycleDrive {
     /// Its amplitudes.
     pub fn amplitudes(&self) -> &Amplitudes {
         match self {
-            CycleDrive::Displacement(amplitudes) | CycleDrive::Force(amplitudes) => amplitudes,
+            CycleDrive::Displacement(amplitudes)
+            | CycleDrive::Force(amplitudes)
+            | CycleDrive::Twist(amplitudes)
+            | CycleDrive::Torque(amplitudes) => amplitudes,
         }
     }
 
@@ -145,6 +155,8 @@ impl CycleDrive {
         match self {
             CycleDrive::Displacement(_) => "displacement",
             CycleDrive::Force(_) => "force",
+            CycleDrive::Twist(_) => "twist",
+            CycleDrive::Torque(_) => "torque",
         }
     }
 }
@@ -229,8 +241,8 @@ impl CycleTask {
     /// The drives, one for each cycle.
     pub fn drives(&self) -> impl ExactSizeIterator<Item = cycle::Drive> + '_ {
         let drive = match self.drive {
-            CycleDrive::Displacement(_) => cycle::Drive::Displacement,
-            CycleDrive::Force(_) => cycle::Drive::Force,
+            CycleDrive::Displacement(_) | CycleDrive::Twist(_) => cycle::Drive::Displacement,
+            CycleDrive::Force(_) | CycleDrive::Torque(_) => cycle::Drive::Force,
         };
         self.drive.amplitudes().all().iter().copied().map(drive)
     }
@@ -250,9 +262,26 @@ impl CycleTask {
         }
     }
 
-    /// Whether the force is driven.
+    /// Whether the force or the torque is driven.
     pub fn is_force_driven(&self) -> bool {
-        matches!(self.drive, CycleDrive::Force(_))
+        matches!(self.drive, CycleDrive::Force(_) | CycleDrive::Torque(_))
+    }
+
+    /// Whether the contact is twisted.
+    pub fn twists(&self) -> bool {
+        matches!(self.drive, CycleDrive::Twist(_) | CycleDrive::Torque(_))
+    }
+
+    /// The first of the studies that know the friction of a displacement alone, if any is asked for.
+    pub fn study_of_friction(&self) -> Option<&'static str> {
+        let studies = [
+            ("normal", self.normal.is_some()),
+            ("frequency_response", self.response.is_some()),
+            ("best_load", self.best_load.is_some()),
+            ("map", self.map.is_some()),
+            ("work_density", self.density.is_some()),
+        ];
+        studies.into_iter().find(|(_, asked)| *asked).map(|(name, _)| name)
     }
 
     /// How many radii there are for each cycle.
@@ -314,6 +343,19 @@ impl Document for CycleRequest {
         let response = response.map(|response| (response, tolerance));
         let frequencies = self.frequency.map_or_else(Vec::new, |frequency| frequency.all().to_vec());
         let task = task.map(|task| CycleTask { normal, response, best_load, map, frequencies, ..task });
+        let study = task.as_ref().and_then(CycleTask::study_of_friction);
+        if let Some(setup) = setup.as_ref().filter(|setup| setup.friction.memory.is_none()) {
+            let known = match study {
+                Some(_) => setup.clone().coulomb("this study of cycles").err(),
+                None => (setup.friction.limit.adhesion > 0.0).then_some(Error::Adhesive("`/cycle`")),
+            };
+            if let Some(error) = known {
+                faults.unanswerable(at("contact").member(member_of_law(&error)), error);
+            }
+        }
+        if let Some(study) = study.filter(|_| task.as_ref().is_some_and(CycleTask::twists)) {
+            faults.add(at(study), "not available for a twist: leave this out");
+        }
         setup.zip(task).map(|(setup, task)| (contact, setup, task))
     }
 }
@@ -334,11 +376,7 @@ fn check_memory(
             let detail = "elastic cycles depend on no frequency: leave this out, or give the contact `prony`";
             faults.add(at("frequency"), detail);
         }
-        (None, None) => {
-            if let Err(error) = setup.clone().coulomb("this computation") {
-                faults.unanswerable(at("contact").member(member_of_law(&error)), error);
-            }
-        }
+        (None, None) => {}
         (Some(prony), Some(frequency)) => {
             if prony.is_fluid() {
                 faults.unanswerable(at("contact").member("prony"), Error::FluidUnderLoad);
@@ -347,9 +385,9 @@ fn check_memory(
                 faults.add(at(name), format_args!("`{name}` is not available for bodies with memory: leave it out"));
             }
             let Some(task) = task else { return };
-            if task.is_force_driven() {
+            if task.is_force_driven() || task.twists() {
                 let detail = "not available for bodies with memory: drive the displacement, or follow a path in time";
-                faults.add(at("drive").member("force"), detail);
+                faults.add(at("drive").member(task.drive.name()), detail);
             }
             let (cycles, times) = (task.drives().len(), frequency.all().len());
             if cycles.saturating_mul(times) > MAP_CYCLES {

@@ -29,11 +29,15 @@ pub struct SteadyCycle: Default omits Option {
     /// Displacement amplitude of the indenter at which gross slip begins under this load, m; only in a map, and of
     /// bodies with `prony`, whose slow cycles have it.
     pub gross_slip_displacement: Option<f64>,
-    /// Amplitude of the displacement of the indenter, m.
-    pub displacement_amplitude: f64,
-    /// Amplitude of the tangential force, N.
-    pub force_amplitude: f64,
-    /// Amplitude of the displacement at the machine, m; only with `machine`.
+    /// Amplitude of the displacement of the indenter, m; left out where the contact is twisted.
+    pub displacement_amplitude: Option<f64>,
+    /// Amplitude of the tangential force, N; left out where the contact is twisted.
+    pub force_amplitude: Option<f64>,
+    /// Amplitude of the angle of twist of the indenter, rad, where `twist` or `torque` is driven.
+    pub twist_amplitude: Option<f64>,
+    /// Amplitude of the torque, N·m, where `twist` or `torque` is driven.
+    pub torque_amplitude: Option<f64>,
+    /// Amplitude of the displacement at the machine, m, or of its angle, rad; only with `machine`.
     pub machine_amplitude: Option<f64>,
     /// Friction work of a cycle, J: the area of the force-displacement loop, without `viscous_work`.
     pub dissipated_energy: f64,
@@ -41,9 +45,11 @@ pub struct SteadyCycle: Default omits Option {
     pub viscous_work: Option<f64>,
     /// The largest elastic energy of the tangential deformation in a cycle, J.
     pub max_elastic_energy: f64,
-    /// Force amplitude over displacement amplitude of the indenter, N/m; at zero amplitude the tangent stiffness.
+    /// Force amplitude over displacement amplitude of the indenter, N/m, or torque over angle, N·m/rad; at zero amplitude
+    /// the tangent stiffness.
     pub secant_stiffness: f64,
-    /// Stiffness of the contact just after a reversal, 2 G* a, N/m; zero without friction.
+    /// Stiffness of the contact just after a reversal, 2 G* a, N/m, under twist (16/3) G a³, N·m/rad; zero without
+    /// friction.
     pub tangent_stiffness: f64,
     /// Dissipated energy, and viscous work, over 2π times the largest elastic energy, a pure number; `null` where the
     /// indenter slides and nothing is stored, as without friction and without load.
@@ -62,7 +68,7 @@ pub struct SteadyCycle: Default omits Option {
     /// How much of the contact slips.
     pub regime: Regime,
     /// The harmonics, if asked for: of the force, N, where the displacement is driven, and of the displacement of the
-    /// indenter, m, where the force is driven.
+    /// indenter, m, where the force is driven; of torque, N·m, and angle, rad, likewise.
     pub harmonics: Option<Vec<Harmonic>>,
     /// The friction work per area, if asked for.
     pub friction_work: Option<FrictionWork>,
@@ -90,4 +96,11 @@ pub struct FrictionWork omits Option {
     /// Friction work per area, J/m²; `null` where it is infinite.
     pub density: Vec<Option<f64>>,
 }
+}
+
+impl SteadyCycle {
+    /// The amplitude of the displacement, m, or of the twist, rad.
+    pub fn amplitude(&self) -> f64 {
+        self.displacement_amplitude.or(self.twist_amplitude).unwrap_or_default()
+    }
 }

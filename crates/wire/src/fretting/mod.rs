@@ -227,6 +227,9 @@ impl Document for FrettingRequest {
             faults.unanswerable(at("path").member("duration"), Error::NoMemory);
         }
         if let Some(plan) = &plan {
+            if plan.twists() {
+                faults.add(at("path"), "cycles are rated along the surface, without a twist");
+            }
             let most = *FRETTING_MOVES.end();
             if plan.length() > most {
                 faults.add(at("path"), format_args!("{} moves: at most {most} can be rated", plan.length()));

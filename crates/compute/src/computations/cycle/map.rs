@@ -67,7 +67,7 @@ struct Column {
 impl Column {
     fn of(cycles: &[SteadyCycle]) -> Column {
         let own = |of: fn(&SteadyCycle) -> Option<f64>| cycles.first().and_then(of).unwrap_or(f64::NAN);
-        let pairs = cycles.iter().map(|cycle| (cycle.displacement_amplitude, cycle.dissipated_energy));
+        let pairs = cycles.iter().map(|cycle| (cycle.amplitude(), cycle.dissipated_energy));
         let mut pairs: Vec<_> = pairs.filter(|(amplitude, work)| *amplitude > 0.0 && *work > 0.0).collect();
         pairs.sort_by(|one, other| one.0.total_cmp(&other.0));
         let load = own(|cycle| cycle.normal_force);

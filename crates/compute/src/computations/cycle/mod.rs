@@ -5,7 +5,7 @@ mod steady;
 mod studies;
 mod timed;
 
-use stickslip_mechanics::{Move, Preload, Tangential};
+use stickslip_mechanics::{Error, Move, Preload, Tangential};
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::{CycleReply, CycleRequest, Harmonic, SteadyCycle};
 
@@ -145,7 +145,15 @@ impl OnContact for CycleTask {
         on_profile(profile, each.saturating_mul(self.rows() as u64).saturating_add(response), false)
     }
 
+    fn takes_shear_strength(&self) -> bool {
+        self.study_of_friction().is_none()
+    }
+
     fn run(self, contact: Contact, _: u64, stop: &dyn Stop) -> Result<SteadyCycles, Failure> {
+        let elastic = contact.check_elastic("`/cycle`");
+        let adheres = elastic.is_ok() && contact.work_of_adhesion() > 0.0;
+        let known = if adheres { Err(Error::Adhesive("`/cycle`")) } else { elastic };
+        known.map_err(|error| Failure::at("", error))?;
         cost::check(OnContact::cost(&self, contact.profile(), 0), stop)?;
         let held = Preload::NormalForce(contact.normal_force());
         SteadyCycles::of(contact.without_history(), self, held, Timer::start(stop), stop)
@@ -206,10 +214,16 @@ impl Outcome for SteadyCycles {
             columns.push(Column::floats("normal_force", "N", |row| cycles[row].normal_force));
             columns.push(Column::floats("gross_slip_displacement", "m", |row| cycles[row].gross_slip_displacement));
         }
-        columns.push(column("displacement_amplitude", "m", |cycle| cycle.displacement_amplitude));
-        columns.push(column("force_amplitude", "N", |cycle| cycle.force_amplitude));
+        let [angle, force, stiffness] = if task.twists() { ["rad", "N·m", "N·m/rad"] } else { ["m", "N", "N/m"] };
+        if task.twists() {
+            columns.push(Column::floats("twist_amplitude", angle, |row| cycles[row].twist_amplitude));
+            columns.push(Column::floats("torque_amplitude", force, |row| cycles[row].torque_amplitude));
+        } else {
+            columns.push(Column::floats("displacement_amplitude", angle, |row| cycles[row].displacement_amplitude));
+            columns.push(Column::floats("force_amplitude", force, |row| cycles[row].force_amplitude));
+        }
         if task.stiffness.is_some() {
-            columns.push(Column::floats("machine_amplitude", "m", |row| cycles[row].machine_amplitude));
+            columns.push(Column::floats("machine_amplitude", angle, |row| cycles[row].machine_amplitude));
         }
         columns.push(column("dissipated_energy", "J", |cycle| cycle.dissipated_energy));
         if timed {
@@ -217,14 +231,14 @@ impl Outcome for SteadyCycles {
         }
         columns.extend([
             column("max_elastic_energy", "J", |cycle| cycle.max_elastic_energy),
-            column("secant_stiffness", "N/m", |cycle| cycle.secant_stiffness),
-            column("tangent_stiffness", "N/m", |cycle| cycle.tangent_stiffness),
+            column("secant_stiffness", stiffness, |cycle| cycle.secant_stiffness),
+            column("tangent_stiffness", stiffness, |cycle| cycle.tangent_stiffness),
             Column::floats("loss_factor", "1", |row| cycles[row].loss_factor),
             Column::floats("sliding_ratio", "1", |row| cycles[row].sliding_ratio),
             column("stick_radius", "m", |cycle| cycle.stick_radius),
             Column::words("regime", |row| cycles[row].regime.name()),
         ]);
-        let unit = if task.is_force_driven() { "m" } else { "N" };
+        let unit = if task.is_force_driven() { angle } else { force };
         for index in 0..task.harmonics {
             let part = |name: &str, of: fn(&Harmonic) -> f64| {
                 let value = move |row: usize| cycles[row].harmonics.as_deref()?.get(index).map(of);
@@ -253,33 +267,43 @@ fn plot(contact: &Contact, cycles: &[SteadyCycle], task: &CycleTask) -> Plot {
         return map::plot(cycles, task.drives().len());
     }
     if let ([only], None) = (cycles, task.normal) {
-        return steady_loop(contact, only);
+        return steady_loop(contact, only, task.twists());
     }
     let panel = |y, colour, of: fn(&SteadyCycle) -> f64| {
-        let mut points: Vec<_> = cycles.iter().map(|cycle| (cycle.displacement_amplitude, of(cycle))).collect();
+        let mut points: Vec<_> = cycles.iter().map(|cycle| (cycle.amplitude(), of(cycle))).collect();
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         Panel { y, curves: vec![Curve::line("", colour, points)] }
     };
     let loss =
         panel(Axis { name: "loss factor", unit: None }, Colour::Red, |cycle| cycle.loss_factor.unwrap_or(f64::NAN));
-    let stiffness = panel(Axis::of("secant stiffness", "N/m"), Colour::Blue, |cycle| cycle.secant_stiffness);
-    Plot::new("Steady cycles", Axis::of("displacement amplitude U₀", "m"), vec![loss, stiffness])
+    let (x, unit) = if task.twists() {
+        (Axis::of("angle amplitude ω₀", "rad"), "N·m/rad")
+    } else {
+        (Axis::of("displacement amplitude U₀", "m"), "N/m")
+    };
+    let stiffness = panel(Axis::of("secant stiffness", unit), Colour::Blue, |cycle| cycle.secant_stiffness);
+    Plot::new("Steady cycles", x, vec![loss, stiffness])
 }
 
 /// The loop of a steady cycle, followed from its upper end.
-fn steady_loop(contact: &Contact, cycle: &SteadyCycle) -> Plot {
+fn steady_loop(contact: &Contact, cycle: &SteadyCycle, twists: bool) -> Plot {
     let mut contact = contact.clone();
     let at = |share: f64| {
-        let displacement = share * cycle.displacement_amplitude;
-        let step = Move { tangential: Some(Tangential::Displacement(displacement)), ..Move::default() };
-        (displacement, contact.apply(&step).map_or(f64::NAN, |()| contact.force()))
+        let place = share * cycle.amplitude();
+        let target = if twists { Tangential::Twist(place) } else { Tangential::Displacement(place) };
+        let step = Move { tangential: Some(target), ..Move::default() };
+        let force = contact.apply(&step).map(|()| contact.state().torque.unwrap_or_else(|| contact.force()));
+        (place, force.unwrap_or(f64::NAN))
     };
     let down = (0..=BRANCH_POINTS).map(|index| 1.0 - 2.0 * index as f64 / BRANCH_POINTS as f64);
     let up = down.clone().map(|share| -share);
     let curves = vec![Curve::line("", Colour::Blue, down.chain(up).map(at))];
     Plot::new(
         format!("Steady cycle of {:.4e} J", cycle.dissipated_energy),
-        Axis::of("displacement U", "m"),
-        vec![Panel { y: Axis::of("tangential force F", "N"), curves }],
+        if twists { Axis::of("angle of twist ω", "rad") } else { Axis::of("displacement U", "m") },
+        vec![Panel {
+            y: if twists { Axis::of("torque M", "N·m") } else { Axis::of("tangential force F", "N") },
+            curves,
+        }],
     )
 }

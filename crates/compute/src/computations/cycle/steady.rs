@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use stickslip_mechanics::cycle::{self, OscillatingCycle, OscillatingLoad, Oscillation};
-use stickslip_mechanics::{Error, Move, Normal, Tangential};
+use stickslip_mechanics::{self as mechanics, Error, Move, Normal, Tangential};
 use stickslip_wire::cycle::CycleTask;
 use stickslip_wire::{CycleReply, FrictionWork, Harmonic, SteadyCycle};
 
@@ -33,8 +33,10 @@ pub fn steady_cycles(
     }
     let sampled = |sampling| sampled(contact, sampling, contact.contact_radius(), "/work_density");
     let places = task.density.as_ref().map(sampled).transpose()?;
-    // Compliance of the machine, m/N.
+    // Compliance of the machine, m/N or rad/(N m).
     let compliance = task.stiffness.map_or(0.0, f64::recip);
+    let twisting = task.twists().then(|| contact.twisting()).transpose();
+    let twisting = twisting.map_err(|error| Failure::at(task.place_of(0), error))?;
     let mut cycles = Vec::with_capacity(task.drives().len());
     // The largest cycle shows the error of the forces.
     let (mut largest, mut error) = (0.0_f64, 0.0_f64);
@@ -50,13 +52,22 @@ pub fn steady_cycles(
             error = error.max(found.error);
             stepped(found, task)
         } else {
-            let found = cycle::SteadyCycle::driven(contact, drive, compliance)
+            let found = cycle::SteadyCycle::driven(twisting.as_ref().unwrap_or(contact), drive, compliance)
+                .map_err(|error| match error {
+                    Error::ForceExceedsFriction { target, limit, .. } if task.twists() => {
+                        Error::TorqueExceedsFriction { target, limit }
+                    }
+                    other => other,
+                })
                 .map_err(|error| Failure::at(task.place_of(index), error))?;
+            let [shifts, twists] = [!task.twists(), task.twists()];
             let harmonics = (task.harmonics > 0).then(|| found.harmonics(task.harmonics));
             error = harmonics.as_ref().map_or(error, |found| error.max(found.error));
             SteadyCycle {
-                displacement_amplitude: found.displacement_amplitude(),
-                force_amplitude: found.force_amplitude(),
+                displacement_amplitude: shifts.then(|| found.displacement_amplitude()),
+                force_amplitude: shifts.then(|| found.force_amplitude()),
+                twist_amplitude: twists.then(|| found.displacement_amplitude()),
+                torque_amplitude: twists.then(|| found.force_amplitude()),
                 machine_amplitude: task.stiffness.map(|_| found.machine_amplitude()),
                 dissipated_energy: found.dissipated_energy(),
                 max_elastic_energy: found.max_elastic_energy(),
@@ -65,7 +76,7 @@ pub fn steady_cycles(
                 loss_factor: found.loss_factor().and_then(finite),
                 sliding_ratio: found.sliding_ratio().and_then(finite),
                 friction_energy: has_bulk(contact).then(|| found.friction_energy()),
-                stick_radius: found.stick_radius(),
+                stick_radius: if twists { contact.radius_of_twist(found.stick_radius()) } else { found.stick_radius() },
                 regime: found.regime().into(),
                 harmonics: harmonics.map(|found| found.harmonics.into_iter().map(Harmonic::from).collect()),
                 friction_work: places.as_ref().map(|places| friction_work(&found, places, stop)).transpose()?,
@@ -76,7 +87,7 @@ pub fn steady_cycles(
                 ..SteadyCycle::default()
             }
         };
-        largest = largest.max(row.displacement_amplitude);
+        largest = largest.max(row.amplitude());
         cycles.push(row);
     }
     let (reason, missed) = match task.normal {
@@ -84,10 +95,13 @@ pub fn steady_cycles(
         None => (REASON, None),
     };
     let mut turned = contact.clone();
-    let step = Move { tangential: Some(Tangential::Displacement(largest)), ..Move::default() };
+    let target = if task.twists() { Tangential::Twist(largest) } else { Tangential::Displacement(largest) };
+    let step = Move { tangential: Some(target), ..Move::default() };
     // A displacement within its range is always reached.
     let estimated = turned.apply(&step).map_or(contact, |()| &turned);
-    let mut warnings = warnings_at(contact, contact.contact_radius(), contact.indentation(), missed);
+    // Those of what is moved: twist couples with nothing.
+    let moved = if task.twists() { estimated } else { contact };
+    let mut warnings = warnings_at(moved, contact.contact_radius(), contact.indentation(), missed);
     let mut frequency_response = None;
     if let Some((asked, tolerance)) = &task.response {
         let (found, warning) = resonance(contact, asked, *tolerance, stop)?;
@@ -97,7 +111,9 @@ pub fn steady_cycles(
     // At the end: it states the time that all of this took.
     let mut accuracy = accuracy(estimated, timer, reason);
     accuracy.force_error = accuracy.force_error.max(error);
-    Ok(CycleReply { contact: contact.summary().into(), cycles, frequency_response, accuracy, warnings })
+    let gross_slip_torque = twisting.map(|twisting| twisting.normal_force());
+    let summary = mechanics::ContactSummary { gross_slip_torque, ..contact.summary() };
+    Ok(CycleReply { contact: summary.into(), cycles, frequency_response, accuracy, warnings })
 }
 
 /// The member that a cycle under a load that oscillates is refused for: the drive, or the load.
@@ -117,8 +133,8 @@ pub(super) fn stepped(cycle: OscillatingCycle, task: &CycleTask) -> SteadyCycle 
     let loss = if stored > 0.0 { lost / (TAU * stored) } else { f64::NAN };
     let secant = cycle.force_amplitude / cycle.displacement_amplitude;
     SteadyCycle {
-        displacement_amplitude: cycle.displacement_amplitude,
-        force_amplitude: cycle.force_amplitude,
+        displacement_amplitude: Some(cycle.displacement_amplitude),
+        force_amplitude: Some(cycle.force_amplitude),
         machine_amplitude: task.stiffness.map(|_| cycle.machine_amplitude),
         dissipated_energy: cycle.dissipated_energy,
         viscous_work: cycle.viscous_work,

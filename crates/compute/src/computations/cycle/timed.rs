@@ -72,7 +72,7 @@ pub fn plot(contact: &Contact, reply: &CycleReply, task: &CycleTask, held: Prelo
             points.sort_by(|one, other| one.0.total_cmp(&other.0));
             let name = match reply.cycles.get(index) {
                 Some(cycle) if amplitudes > 1 && amplitudes <= COLOURS.len() => {
-                    format!("U₀ = {:.3e} m", cycle.displacement_amplitude)
+                    format!("U₀ = {:.3e} m", cycle.amplitude())
                 }
                 _ => String::new(),
             };
@@ -88,7 +88,7 @@ pub fn plot(contact: &Contact, reply: &CycleReply, task: &CycleTask, held: Prelo
 
 /// The loop of one steady cycle.
 fn steady_loop(contact: &Contact, relaxed: &Contact, only: &SteadyCycle) -> Plot {
-    let (amplitude, frequency) = (only.displacement_amplitude, only.frequency.unwrap_or(f64::NAN));
+    let (amplitude, frequency) = (only.amplitude(), only.frequency.unwrap_or(f64::NAN));
     let points = TimedCycle { amplitude, frequency }.points(contact, relaxed).unwrap_or_default();
     let work = only.dissipated_energy + only.viscous_work.unwrap_or(0.0);
     let curves = vec![Curve::line("", Colour::Blue, points)];

@@ -8,7 +8,9 @@ use stickslip_wire::check::{Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
 use stickslip_wire::pointer_lookup::{Lookup, lookup};
 use stickslip_wire::sweep::CheckedSweep;
-use stickslip_wire::{Peak, PlanarPlan, PlanarReply, PlanarState, PlanarStress, PrepareOnce, parse_value};
+use stickslip_wire::{
+    ContactSummary, Peak, PlanarPlan, PlanarReply, PlanarState, PlanarStress, PrepareOnce, parse_value,
+};
 
 /// What planning takes besides profiles: a thread of the solver, however small the sweep is.
 const PLANNING_COST: Nanoseconds = 100_000;
@@ -153,16 +155,40 @@ fn reply_template(simulation: &Simulation) -> SimulationReply {
     let peak = Peak { radius: along(false), x: along(true), shear: None };
     let residual = || Residual { peaks: vec![peak], ..Residual::default() };
     let stick_centre = line.and_then(LineContact::bulk).map(|_| 0.0);
-    let state = State { stick_centre, ..State::default() };
+    let state = |twisted: bool| {
+        let of = |present: bool| present.then_some(0.0);
+        let (displacement, twist) = (of(!twisted), of(twisted));
+        State { displacement, force: displacement, twist, torque: twist, stick_centre, ..State::default() }
+    };
+    let contact = ContactSummary { gross_slip_torque: simulation.plan.twists().then_some(0.0), ..Default::default() };
+    let last = twisted(&simulation.plan).last();
     let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
     SimulationReply::Line(SimulateReply {
-        steps: vec![state; if simulation.steps == Steps::All { moves } else { 1 }],
+        contact,
+        steps: match simulation.steps {
+            Steps::All => twisted(&simulation.plan).map(state).collect(),
+            Steps::Last => vec![state(last.unwrap_or(false))],
+        },
         stress: simulation.stress.as_ref().map(|sampling| stress_template(sampling, line.is_some())),
         residual: simulation.residual.then(residual),
         protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
         accuracy: Accuracy { work_error: (simulation.plan.curved() > 0).then_some(0.0), ..Accuracy::default() },
         // The stress below the surface is no output of a sweep.
         ..SimulateReply::default()
+    })
+}
+
+/// Whether the contact is twisted after each move.
+fn twisted(plan: &Plan) -> impl Iterator<Item = bool> {
+    let mut is_twisted = matches!(plan, Plan::Twist(_) | Plan::Torque(_));
+    let moves = if let Plan::Moves(moves) = plan { &moves[..] } else { &[] };
+    (0..plan.length()).map(move |index| {
+        if let Some(step) = moves.get(index) {
+            let lifts = !step.relative && step.indentation.or(step.normal_force).is_some_and(|load| load <= 0.0);
+            let shifts = step.displacement.is_some() || step.force.is_some();
+            is_twisted = !lifts && !shifts && (is_twisted || step.twists());
+        }
+        is_twisted
     })
 }
 

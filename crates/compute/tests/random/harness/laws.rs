@@ -166,7 +166,7 @@ fn states(simulation: &Simulation, reply: &SimulateReply) {
     let mut dissipated = 0.0;
     for (index, state) in reply.steps.iter().enumerate() {
         let limit = friction * state.normal_force;
-        let beyond = state.force.abs() - limit;
+        let beyond = state.force.unwrap().abs() - limit;
         let size = friction * largest_load(reply, index);
         assert!(
             beyond <= (FORCE + 4.0 * reply.accuracy.force_error) * size,
@@ -192,7 +192,7 @@ fn states(simulation: &Simulation, reply: &SimulateReply) {
         }
         assert_eq!(state.indentation < 0.0, state.regime == Regime::Separated, "step {index}: {state:?}");
         if state.indentation <= 0.0 {
-            let carried = [state.force, state.normal_force, state.elastic_energy];
+            let carried = [state.force.unwrap(), state.normal_force, state.elastic_energy];
             assert!(carried.iter().all(|value| same_number(*value, 0.0)), "step {index}: {state:?}");
             assert_eq!(state.memory_depth, 0, "step {index}: {state:?}");
         }
@@ -218,6 +218,8 @@ fn listed(path: &Path) -> Option<Vec<Move>> {
         Path::Moves(moves) => Some(moves.clone()),
         Path::Displacement(targets) => Some(targets.iter().copied().map(Move::displacement).collect()),
         Path::Force(targets) => Some(targets.iter().copied().map(Move::force).collect()),
+        Path::Twist(targets) => Some(targets.iter().copied().map(Move::twist).collect()),
+        Path::Torque(targets) => Some(targets.iter().copied().map(Move::torque).collect()),
         Path::FallingAmplitude(_) | Path::EqualPeaks(_) | Path::Cycles(_) => None,
     }
 }
@@ -236,7 +238,7 @@ fn moves(request: &SimulateRequest, reply: &SimulateReply) -> Vec<Move> {
         let moves = cycles.moves(reply.contact.indentation, reply.contact.normal_force);
         return moves.expect("the load presses").collect();
     }
-    let taken = || reply.steps.iter().map(|state| Move::displacement(state.displacement)).collect();
+    let taken = || reply.steps.iter().map(|state| Move::displacement(state.displacement.unwrap())).collect();
     listed(&along_a_line(request)).unwrap_or_else(taken)
 }
 
@@ -251,11 +253,11 @@ fn targets(request: &SimulateRequest, reply: &SimulateReply) {
             continue;
         }
         let met = |target: Option<f64>, found: f64| target.is_none_or(|target| same_number(target, found));
-        assert!(met(step.displacement, state.displacement), "step {index}: {step:?} gave {state:?}");
+        assert!(met(step.displacement, state.displacement.unwrap()), "step {index}: {step:?} gave {state:?}");
         assert!(met(step.indentation, state.indentation), "step {index}: {step:?} gave {state:?}");
         assert!(met(step.normal_force, state.normal_force), "step {index}: {step:?} gave {state:?}");
         let unit = request.contact.friction * largest_load(reply, index);
-        let missed = step.force.map_or(0.0, |target| (state.force - target).abs());
+        let missed = step.force.map_or(0.0, |target| (state.force.unwrap() - target).abs());
         assert!(
             missed <= (FORCE + tolerance + 4.0 * reply.accuracy.force_error) * unit,
             "step {index}: {step:?} gave {state:?}"
@@ -352,5 +354,8 @@ fn repeat_last_move(request: &SimulateRequest, reply: &SimulateReply) {
     }
     let unit = request.contact.friction * largest_load(reply, reply.steps.len() - 1);
     let allowed = (FORCE + 8.0 * longer.accuracy.force_error + request.tolerance.unwrap_or(1e-10)) * unit;
-    assert!((before.force - after.force).abs() <= allowed, "the last move again: {before:?} {after:?}");
+    assert!(
+        (before.force.unwrap() - after.force.unwrap()).abs() <= allowed,
+        "the last move again: {before:?} {after:?}"
+    );
 }
