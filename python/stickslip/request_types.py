@@ -513,11 +513,11 @@ class Observation(_ObservationNeeded, total=False):
     """When it was measured (RFC 3339, from 1678 to 2261); not before the measurement that precedes it."""
 
 
-class _PathDurationNeeded(TypedDict):
+class _PathMovesNeeded(TypedDict):
     moves: Sequence[Move | Mapping[str, Any]]
 
 
-class PathDuration(_PathDurationNeeded, total=False):
+class PathMoves(_PathMovesNeeded, total=False):
     """Moves, one after the other."""
 
     duration: Quantity
@@ -535,22 +535,22 @@ class PathDisplacement(_PathDisplacementNeeded, total=False):
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _PathDurationNeeded(TypedDict):
+class _PathForceNeeded(TypedDict):
     force: Quantities
 
 
-class PathDuration(_PathDurationNeeded, total=False):
+class PathForce(_PathForceNeeded, total=False):
     """Tangential forces, N, one move each."""
 
     duration: Quantity
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _PathDurationNeeded(TypedDict):
+class _PathFallingAmplitudeNeeded(TypedDict):
     falling_amplitude: FallingAmplitude | Mapping[str, Any]
 
 
-class PathDuration(_PathDurationNeeded, total=False):
+class PathFallingAmplitude(_PathFallingAmplitudeNeeded, total=False):
     """Back and forth with an amplitude that falls linearly to zero (eq.
 
     20 of the paper).
@@ -560,11 +560,11 @@ class PathDuration(_PathDurationNeeded, total=False):
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _PathDurationNeeded(TypedDict):
+class _PathEqualPeaksNeeded(TypedDict):
     equal_peaks: EqualPeaks | Mapping[str, Any]
 
 
-class PathDuration(_PathDurationNeeded, total=False):
+class PathEqualPeaks(_PathEqualPeaksNeeded, total=False):
     """Back and forth from gross slip to rest.
 
     With the amplitudes that leave equal peaks of shear stress on the profile of the contact.
@@ -753,11 +753,11 @@ class SimulatedMove(TypedDict, total=False):
     """
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathMovesNeeded(TypedDict):
     moves: Sequence[SimulatedMove | Mapping[str, Any]]
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathMoves(_SimulatedPathMovesNeeded, total=False):
     """Moves, one after the other."""
 
     duration: Quantity
@@ -775,22 +775,22 @@ class SimulatedPathDisplacement(_SimulatedPathDisplacementNeeded, total=False):
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathForceNeeded(TypedDict):
     force: Quantities
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathForce(_SimulatedPathForceNeeded, total=False):
     """Tangential forces, N, one move each."""
 
     duration: Quantity
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathFallingAmplitudeNeeded(TypedDict):
     falling_amplitude: FallingAmplitude | Mapping[str, Any]
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathFallingAmplitude(_SimulatedPathFallingAmplitudeNeeded, total=False):
     """Back and forth with an amplitude that falls linearly to zero (eq.
 
     20 of the paper).
@@ -800,11 +800,11 @@ class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathEqualPeaksNeeded(TypedDict):
     equal_peaks: EqualPeaks | Mapping[str, Any]
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathEqualPeaks(_SimulatedPathEqualPeaksNeeded, total=False):
     """Back and forth from gross slip to rest.
 
     With the amplitudes that leave equal peaks of shear stress on the profile of the contact.
@@ -825,33 +825,33 @@ class SimulatedPathCycles(_SimulatedPathCyclesNeeded, total=False):
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathEllipseNeeded(TypedDict):
     ellipse: Ellipse | Mapping[str, Any]
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathEllipse(_SimulatedPathEllipseNeeded, total=False):
     """Turns around an ellipse."""
 
     duration: Quantity
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathTwistNeeded(TypedDict):
     twist: Quantities
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathTwist(_SimulatedPathTwistNeeded, total=False):
     """Angles of twist, rad, one move each."""
 
     duration: Quantity
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class _SimulatedPathDurationNeeded(TypedDict):
+class _SimulatedPathTorqueNeeded(TypedDict):
     torque: Quantities
 
 
-class SimulatedPathDuration(_SimulatedPathDurationNeeded, total=False):
+class SimulatedPathTorque(_SimulatedPathTorqueNeeded, total=False):
     """Torques, N·m, one move each."""
 
     duration: Quantity
@@ -1146,8 +1146,11 @@ Output: TypeAlias = Union[
 ]
 """A number of the reply to `POST /simulate`: a JSON pointer, or an object that names its column too."""
 Path: TypeAlias = Union[
-    "PathDuration",
+    "PathMoves",
     "PathDisplacement",
+    "PathForce",
+    "PathFallingAmplitude",
+    "PathEqualPeaks",
     "PathCycles",
     "PathTwist",
     "PathTorque",
@@ -1175,9 +1178,15 @@ ScanData: TypeAlias = Union[
 ]
 """Heights with their places, one key. A height of `null` is missing."""
 SimulatedPath: TypeAlias = Union[
-    "SimulatedPathDuration",
+    "SimulatedPathMoves",
     "SimulatedPathDisplacement",
+    "SimulatedPathForce",
+    "SimulatedPathFallingAmplitude",
+    "SimulatedPathEqualPeaks",
     "SimulatedPathCycles",
+    "SimulatedPathEllipse",
+    "SimulatedPathTwist",
+    "SimulatedPathTorque",
     "Mapping[str, Any]",
 ]
 """A path, one key: a list of moves, or a short form of one."""

@@ -28,8 +28,8 @@ fn describe_defaults(schema: &mut Value) {
     }
 }
 
-/// Closes the alternatives, as a choice with one key allows no second one, and names them by that key: the names become
-/// names of types.
+/// Closes the alternatives, and names them by the key that chooses, the first that is required: the names become names of
+/// types.
 fn write_choices(schemas: &mut Map<String, Value>) {
     for (name, schema) in schemas {
         for choice in schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {
@@ -39,7 +39,9 @@ fn write_choices(schemas: &mut Map<String, Value>) {
                 // What its parts contain counts too.
                 choice["unevaluatedProperties"] = json!(false);
             }
-            let key = choice["properties"].as_object().and_then(|members| members.keys().next());
+            let needed = |key: &&String| choice["required"].as_array().is_some_and(|all| all.contains(&json!(key)));
+            let members = choice["properties"].as_object();
+            let key = members.and_then(|members| members.keys().find(needed).or_else(|| members.keys().next()));
             if let Some(key) = key {
                 let words = key.split('_').map(|word| word[..1].to_uppercase() + &word[1..]);
                 choice["title"] = json!(name.clone() + &words.collect::<String>());
