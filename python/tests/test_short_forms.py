@@ -112,7 +112,6 @@ def test_a_url_needs_no_scheme() -> None:
         (lambda ball: ss.Contact(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.3, effective=1.0), "did you mean bodies=ss.Mod"),
         (lambda ball: ss.Contact(ss.Sphere(0.01), [STEEL, ss.RIGID], 0.3, normal_forces=1.0), "mean normal_force?"),
         (lambda ball: ball.path(ellipse={}), "contact.path has no keyword 'ellipse': ss.accuracy and ss.simulate have"),
-        (lambda ball: ball.path(twist=[1e-5]), "contact.path has no keyword 'twist': ss.accuracy and ss.simulate have"),
         (lambda ball: ball.path(forces=[1.0]), "did you mean force? known are cycles, displacement"),
         (lambda ball: ss.cycle(ball, amplitude=1e-8), "ss.cycle has no keyword 'amplitude': known are"),
         (
@@ -122,7 +121,7 @@ def test_a_url_needs_no_scheme() -> None:
         (lambda ball: ball.subsurface({}), "contact.subsurface takes no argument without its name"),
         (lambda ball: ss.sliders(ball), "expected one of `count`, `force_error`, `work_error`"),
     ],
-    ids=range(20),
+    ids=range(19),
 )
 def test_messages_are_in_words_of_the_package(here: ss.Contact, call: Any, words: str) -> None:
     with pytest.raises((ss.InvalidInput, TypeError)) as refused:
