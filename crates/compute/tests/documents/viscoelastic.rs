@@ -227,7 +227,7 @@ fn a_frequency_goes_with_memory_and_with_nothing_that_it_lacks() {
         assert_refused("/cycle", &of(contact, &rest), ("invalid_input", place, text));
     };
     refused(&ball(), asked(json!({})), "/frequency", "prony");
-    refused(&rubber(), json!({"drive": {"displacement": 1e-5}}), "/frequency", "missing");
+    refused(&rubber(), json!({"drive": {"displacement": 1e-5}}), "/frequency", "depend");
     refused(&rubber(), asked(json!({"frequency": 0.0})), "/frequency", "out of range");
     refused(&rubber(), asked(json!({"frequency": [1.0, -2.0]})), "/frequency/1", "out of range");
     refused(&rubber(), asked(json!({"frequency": []})), "/frequency", "1000");

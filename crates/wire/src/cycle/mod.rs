@@ -370,7 +370,7 @@ fn check_memory(
     let (Some(setup), at) = (setup, |name| JsonPath::Root.member(name)) else { return };
     match (&setup.friction.memory, frequency) {
         (Some(_), None) => {
-            faults.add(at("frequency"), "missing: the cycles of bodies with memory depend on it, Hz");
+            faults.add(at("frequency"), "the cycles of bodies with memory depend on the frequency: give it, Hz");
         }
         (None, Some(_)) => {
             let detail = "elastic cycles depend on no frequency: leave this out, or give the contact `prony`";
