@@ -78,6 +78,50 @@ async fn scan_a_file_of_an_instrument_becomes_the_contact_radius() {
     scene.end(&["status of 422"]).await;
 }
 
+#[tokio::test]
+async fn scan_a_map_that_is_not_of_revolution_becomes_the_body_that_it_suggests() {
+    let scene = Scene::start().await;
+    let browser = &scene.browser;
+    // The larger radius in metres, along y; a cylinder has none.
+    for (kind, curvature) in [("ellipsoid", 1.0 / 0.016), ("cylinder", 0.0)] {
+        scene.view("").await;
+        browser.click("#new").await;
+        browser.find("form select").await;
+        browser.choose("Shape of the indenter", "tabulated").await;
+        // 8 mm across, 1 nm up and down of noise; upside down.
+        let row = |index: i32| {
+            let [x, y] = [index % 21, index / 21].map(|step| 12.0 * f64::from(step - 10));
+            let height = 1e-3 * (x * x / 8e-3 + y * y * curvature) / 2.0 + 0.1 * f64::from((index * 37) % 21 - 10);
+            format!("{x};{y};{:.2}", -height)
+        };
+        let map = format!("X (um);Y (um);Height (nm)\n{}", (0..441).map(row).collect::<Vec<_>>().join("\n"));
+        browser.set("form textarea", &map).await;
+        browser.click("#fit-scan").await;
+        browser.says("#scan-said", "not one of revolution").await;
+        browser.says("#use-suggested", &format!("Use the {kind} that the scan suggests")).await;
+        browser.click("#use-suggested").await;
+        browser.until(&format!("document.querySelector('form select').value === {kind:?}")).await;
+        browser.click("#create").await;
+        let id = scene.shown(None).await;
+        let made: Value = serde_json::to_value(scene.server.client.definition(id).await.unwrap()).unwrap();
+        let profile = &made["profile"];
+        assert_eq!(profile["type"], kind, "{profile}");
+        let near = |pointer: &str, truth: f64| {
+            let found = number(profile.pointer(pointer).unwrap());
+            assert!((found / truth - 1.0).abs() < 0.01, "{pointer}: {profile}");
+        };
+        if kind == "ellipsoid" {
+            near("/radii/0", 0.016);
+            near("/radii/1", 0.008);
+        } else {
+            near("/radius", 0.008);
+            near("/length", 2.4e-4);
+        }
+    }
+    // A map is no table of a profile yet, and the form says so meanwhile.
+    scene.end(&["status of 422"]).await;
+}
+
 /// The cells of the table of columns.
 const TABLE: &str = "[...document.querySelectorAll('#loop-card .columns table:not(.file-lines) tbody tr')].map(\
                      (row) => [...row.cells].map((cell) => cell.innerText).join(' | '))";

@@ -150,6 +150,16 @@ fn what_a_loop_leaves_open_is_said() {
     let step = 0.03 * largest;
     let stepped = noisy(&large[1], step * 0.57).iter().map(|force| (force / step).round() * step).collect();
     let of_force = |force: Vec<f64>| body(&[large[0].clone(), force]);
+    // Of partial slip: the intervals that small errors of the bench leave.
+    let reply = fitted(&small);
+    let warnings = reply["warnings"].as_array().unwrap();
+    let partial = warnings.iter().find(|warning| warning["code"] == "partial_slip_only").unwrap();
+    let message = partial["message"].as_str().unwrap();
+    let (_, intervals) = message.split_once("comes early: ").unwrap_or_else(|| panic!("{message}"));
+    let words: Vec<&str> = intervals.split([' ', ',']).collect();
+    let [low, high] = [2, 4].map(|place| words[place].parse::<f64>().unwrap());
+    let stated = &reply["estimates"]["friction"]["interval"];
+    assert!(words[0] == "friction" && low < number(&stated[0]) && number(&stated[1]) < high, "{message} {stated}");
     for (body, said, unsaid) in [
         (with(small.clone(), "/known", json!({})), &["machine_compliance_unknown", "partial_slip_only"][..], ""),
         (small, &["partial_slip_only"], "machine_compliance_unknown"),

@@ -12,7 +12,7 @@ use super::least_squares::Data;
 use super::parameter::is_of;
 use super::quantised::Waves;
 use super::record::stiffness;
-use super::{Omitted, Parameter, Sensitivity, Start};
+use super::{Estimate, LoopFit, Omitted, Parameter, Sensitivity, Start};
 
 /// A score beyond so many standard errors is no accident.
 pub(super) const SIGNIFICANT: f64 = 4.0;
@@ -128,5 +128,27 @@ impl Omitted {
         // No machine has a negative compliance: something else is wrong then.
         let possible = self.parameter != Parameter::MachineCompliance || self.value.is_none_or(|value| value > 0.0);
         possible && self.z.is_some_and(|z| z.abs() > SIGNIFICANT)
+    }
+}
+
+impl LoopFit {
+    /// The interval of an estimate at 95 %, in its SI unit, that holds small errors of the bench too: a force that
+    /// comes late by up to one sample, an offset of up to 1 % and a gain that drifts by up to 1 % either way; `None`
+    /// where an end is open. A force that comes early is not among them: friction does not change in proportion to it.
+    /// A positive estimate changes by factors, as its logarithm is nearer to linear.
+    #[must_use]
+    pub fn interval_with_bench(&self, estimate: &Estimate) -> Option<[f64; 2]> {
+        let of_bench = |one: &&Sensitivity| {
+            matches!(one.parameter, Parameter::Delay | Parameter::ForceOffset | Parameter::GainDrift)
+        };
+        let shifts = self.sensitivity.iter().filter(of_bench).flat_map(|one| &one.shifts);
+        let own = shifts.filter(|(parameter, _)| *parameter == estimate.parameter);
+        let shift: f64 = own.map(|(_, shift)| shift.abs()).sum();
+        let [low, high] = [estimate.interval[0]?, estimate.interval[1]?];
+        if estimate.parameter.positive() && estimate.value > 0.0 {
+            let factor = (shift / estimate.value).exp();
+            return Some([low / factor, high * factor]);
+        }
+        Some([low - shift, high + shift])
     }
 }

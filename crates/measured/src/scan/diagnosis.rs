@@ -20,8 +20,10 @@ const MOST_RATIO: f64 = 4.0;
 const MOST_LAG: f64 = 12.0;
 /// Residuals below this share of the range of the heights are errors of the curve.
 const LEAST_RESIDUAL: f64 = 3e-4;
-/// The variance of the differences of the means of neighbouring rows, over that of noise, beyond which rows drift.
+/// The variance of the third differences of the means of neighbouring rows, over that of noise, beyond which rows
+/// drift, and that of independent values of unit variance.
 const MOST_DRIFT: f64 = 4.0;
+const THIRD: f64 = 20.0;
 /// Points that a row needs.
 const ROW_POINTS: usize = 5;
 /// Outliers side by side that are no accident, and how many times as many of such runs as by chance.
@@ -91,13 +93,13 @@ impl Diagnosis {
         });
         let second_harmonic = scaled.plane.then(|| is_better || has_second_harmonic(fitted, scaled, mean));
         let paraboloid = fitted_to_all.filter(|_| second_harmonic == Some(true)).map(|(body, _)| body);
-        let structured =
-            neighbours.is_structured() || row_drift(fitted, scaled) > MOST_DRIFT || has_clusters(fitted, scaled);
+        // A second harmonic is structure too, with a name of its own, but none that goes from row to row.
+        let structured = row_drift(fitted, scaled) > MOST_DRIFT
+            || second_harmonic != Some(true) && (neighbours.is_structured() || has_clusters(fitted, scaled));
         let edge = edges::largest(fitted, scaled);
         Diagnosis {
             random: neighbours.random(),
-            // A second harmonic is structure too, with a name of its own.
-            structure: (structured && second_harmonic != Some(true)).then(|| neighbours.ratio()),
+            structure: structured.then(|| neighbours.ratio()),
             edge,
             second_harmonic,
             paraboloid,
@@ -164,7 +166,8 @@ impl Neighbours {
     }
 }
 
-/// Half the mean square of the differences of neighbouring rows' means, over the variance that noise gives it.
+/// The mean square of the third differences of neighbouring rows' means, over what noise within the rows gives it: of
+/// a paraboloid they are zero, whatever the profile leaves of it.
 fn row_drift(fitted: &Fitted, scaled: &Scaled) -> f64 {
     if !scaled.plane {
         return 0.0;
@@ -182,14 +185,17 @@ fn row_drift(fitted: &Fitted, scaled: &Scaled) -> f64 {
     }
     rows.retain(|row| row[2] >= ROW_POINTS as f64);
     let count = rows.iter().map(|row| row[2]).sum::<f64>();
-    let variance = rows.iter().map(|row| row[1]).sum::<f64>() / count.max(1.0);
+    let mean = |row: &[f64; 3]| row[0] / row[2];
+    let within = |row: &[f64; 3]| row[1] - row[2] * mean(row) * mean(row);
+    let variance = rows.iter().map(within).sum::<f64>() / count.max(1.0);
     let size = count / rows.len().max(1) as f64;
     if rows.len() < ROW_POINTS || variance.sqrt() < LEAST_RESIDUAL {
         return 0.0;
     }
-    let mean = |row: &[f64; 3]| row[0] / row[2];
-    let differences = rows.windows(2).map(|pair| (mean(&pair[1]) - mean(&pair[0])).powi(2));
-    0.5 * differences.sum::<f64>() / (rows.len() - 1) as f64 / (variance / size)
+    let means: Vec<f64> = rows.iter().map(mean).collect();
+    let third = |z: &[f64]| (z[3] - 3.0 * (z[2] - z[1]) - z[0]).powi(2) / THIRD;
+    let differences = means.windows(4).map(third);
+    differences.sum::<f64>() / (means.len() - 3) as f64 / (variance / size)
 }
 
 /// Whether outliers lie side by side more often than by chance.

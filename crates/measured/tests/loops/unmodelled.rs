@@ -414,3 +414,32 @@ fn a_delay_that_is_free_is_found() {
         assert!(held.iter().all(|held| *held >= 7), "{amplitude} {samples}: {held:?}");
     }
 }
+
+/// In partial slip no residual shows a small error of the bench: the interval that allows for it holds, where the
+/// other one misses in most records.
+#[test]
+fn in_partial_slip_the_interval_with_the_bench_holds_its_small_errors() {
+    let cases = std::env::var("STICKSLIP_LOOP_CASES").map_or(10, |cases| cases.parse().unwrap());
+    for (name, fault) in [
+        ("force one sample late", Fault::Late(1.0)),
+        ("force 0.3 samples late", Fault::Late(0.3)),
+        ("force offset of 1 %", Fault::Untared(0.01)),
+        ("force offset of -1 %", Fault::Untared(-0.01)),
+        ("gain that drifts by 1 %", Fault::GainDrift(0.01)),
+    ] {
+        let (mut plain, mut with_bench) = ([0; 2], [0; 2]);
+        for seed in 0..cases {
+            let Case { found, truths } = case(&kind(name, fault, 0.7), seed);
+            for (index, (estimate, (_, truth))) in found.estimates.iter().zip(&truths).enumerate() {
+                let holds = |[low, high]: [Option<f64>; 2]| {
+                    low.is_none_or(|low| low <= *truth) && high.is_none_or(|high| *truth <= high)
+                };
+                plain[index] += u64::from(holds(estimate.interval));
+                let wider = found.interval_with_bench(estimate).map_or([None; 2], |ends| ends.map(Some));
+                with_bench[index] += u64::from(holds(wider));
+            }
+        }
+        println!("| {name}, partial slip | {cases} | {plain:?} | {with_bench:?} |");
+        assert!(with_bench.iter().all(|held| 10 * held >= 9 * cases), "{name}: {with_bench:?}");
+    }
+}

@@ -2,6 +2,7 @@
 
 use stickslip_measured::loops::{self, Error, Known, LoopFit, Noise, Note, Parameter, Record, Start};
 use stickslip_mechanics as mechanics;
+use stickslip_plot::in_unit;
 use stickslip_wire::fit::{
     FitEstimate, FitParameter, FitReply, FitResidual, FitUnits, FittedLoop, LoopStart, MeasuredLoop, NoiseLevels,
     OmittedParameter, ParameterSensitivity, SignRuns,
@@ -260,8 +261,27 @@ fn partial_slip(fit: &LoopFit) -> String {
     };
     let all: Vec<String> = fit.sensitivity.iter().filter_map(described).collect();
     let effects = if all.is_empty() { String::new() } else { format!("; {}", all.join("; ")) };
+    let widened = |estimate: &loops::Estimate| {
+        let [low, high] = fit.interval_with_bench(estimate)?;
+        let end = |value: f64| match estimate.parameter {
+            Parameter::GStar => in_unit(value, "Pa"),
+            _ => format!("{value:.3}"),
+        };
+        let is_stated = matches!(estimate.parameter, Parameter::Friction | Parameter::GStar);
+        is_stated.then(|| format!("{} from {} to {}", estimate.parameter.name(), end(low), end(high)))
+    };
+    let intervals: Vec<String> = fit.estimates.iter().filter_map(widened).collect();
+    let allowed = if all.is_empty() || intervals.is_empty() {
+        String::new()
+    } else {
+        format!(
+            ". Intervals that allow for all of these, a force that comes late included, not one that comes early: {}",
+            intervals.join(", ")
+        )
+    };
     format!(
-        "no loop reaches gross slip: friction and stiffness follow only from the curvature of the branches{effects}"
+        "no loop reaches gross slip: friction and stiffness follow only from the curvature of the branches{effects}\
+         {allowed}"
     )
 }
 
