@@ -1338,7 +1338,7 @@ class State(Result):
     stored moves of a contact.
     """
 
-    displacement: float | None
+    displacement: float
     """Tangential displacement U of the indenter, m; positive along x. Left out from the first twist until the contact
     lifts off.
     """
@@ -1346,7 +1346,7 @@ class State(Result):
     electrical_conductance: float | None
     """Electrical conductance of the contact, S, if its bodies have a `resistivity`: that of the constriction alone."""
 
-    force: float | None
+    force: float
     """Tangential force F_x, N; positive for a positive displacement of a virgin contact. Left out as `displacement`."""
 
     stick_centre: float | None

@@ -22,6 +22,8 @@ from openapi_schemas import (
 
 #: Classes of the package that give a reply more than its fields.
 BASES = {"FrettingReply": "Fretting", "SweepReply": "Swept", "UncertainOutput": "Uncertain"}
+#: Numbers that every contact has but one that is twisted: whoever twists it knows that it has others in their place.
+UNTWISTED = {("State", "displacement"), ("State", "force")}
 #: What has a class without being a reply of its own, or the first shape of one.
 PARTS = (
     "Accuracy",
@@ -167,7 +169,9 @@ def results_file(api: Schema) -> str:
         text += [f"\nclass {name}({BASES.get(name, 'Result')}):", summary(schemas[name].get("description", name))]
         for member in sorted(members, key=lambda one: (one not in required, list(members).index(one))):
             shape = annotation(members[member], records, set(classes), enums)
-            if member not in required and not shape.endswith("| None") and shape != "Any":
+            if (name, member) in UNTWISTED:
+                shape = shape.removesuffix(" | None")
+            elif member not in required and not shape.endswith("| None") and shape != "Any":
                 shape += " | None"
             text.append(f"\n    {attribute(member)}: {shape}")
             if "description" in members[member]:
