@@ -283,7 +283,7 @@ impl Row {
         Ok(low + within([0.0, high - low], -low, sum))
     }
 
-    /// w over x up to the contact radius, m, and w there.
+    /// The hoop stress, Pa, at a radius, m, of a contact of the radius `edge`, m.
     fn hoop(&self, law: &TwistLaw<'_>, edge: f64, radius: f64) -> f64 {
         let inside = self.levels.iter().zip(&self.carried).enumerate().filter(|(index, _)| self.place(*index) < edge);
         let nodes = inside.map(|(index, (_, carried))| (self.place(index), *carried));
