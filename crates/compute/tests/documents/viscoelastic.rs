@@ -157,6 +157,7 @@ fn a_duration_beside_a_path_is_that_of_each_of_its_moves() {
         json!({"ellipse": {"radii": [1e-7, 5e-8], "turns": 1}}),
         json!({"equal_peaks": {"reversals": 4}}),
         json!({"twist": [1e-3]}),
+        json!({"torque": [1e-3]}),
     ] {
         refused(&ball(), path(members), "memory");
     }

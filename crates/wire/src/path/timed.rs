@@ -112,7 +112,7 @@ fn timed(plan: Plan, duration: Option<f64>, at: JsonPath<'_>, faults: &mut Fault
     let what = match &plan {
         Plan::EqualPeaks(_) => "`equal_peaks`",
         Plan::Plane(_) => "motion in the plane",
-        Plan::Twist(_) => "twist",
+        Plan::Twist(_) | Plan::Torque(_) => "twist",
         _ => return Some(Plan::Timed(Box::new(plan), duration)),
     };
     faults.refuse(at.member(DURATION), Error::Viscoelastic(what))
