@@ -585,18 +585,26 @@ class PathCycles(_PathCyclesNeeded, total=False):
     """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
-class PathTwist(TypedDict):
-    """Angles of twist, rad, one move each."""
-
+class _PathTwistNeeded(TypedDict):
     twist: Quantities
+
+
+class PathTwist(_PathTwistNeeded, total=False):
     """Angles of twist, rad, one move each."""
 
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
-class PathTorque(TypedDict):
-    """Torques, N·m, one move each."""
 
+class _PathTorqueNeeded(TypedDict):
     torque: Quantities
+
+
+class PathTorque(_PathTorqueNeeded, total=False):
     """Torques, N·m, one move each."""
+
+    duration: Quantity
+    """How long each move takes, s, unless it says so itself; at once if left out. Only of bodies with `prony`."""
 
 
 class PointScan(TypedDict):
