@@ -104,6 +104,24 @@ impl<C: Clone> Stepped<C> {
     }
 }
 
+/// The state for the caller, of either kind: what differs is given.
+macro_rules! shown {
+    ($state:ident, $displacement:expr, $force:expr, $turning_points:expr) => {
+        ss_contact_state {
+            displacement: $displacement,
+            force: $force,
+            indentation: $state.indentation,
+            normal_force: $state.normal_force,
+            contact_radius: $state.contact_radius,
+            stick_radius: $state.stick_radius,
+            dissipated_energy: $state.dissipated_energy,
+            elastic_energy: $state.elastic_energy,
+            turning_points: $turning_points,
+            regime: regime($state.regime),
+        }
+    };
+}
+
 impl Held {
     /// The contact of a definition, as POST /contacts takes it.
     pub fn line(json: &[u8]) -> Result<Held, Fault> {
@@ -165,34 +183,12 @@ impl Held {
     pub fn state(&self) -> ss_contact_state {
         match self {
             Held::Line(Stepped { committed, .. }) => {
-                let state = committed.state();
-                ss_contact_state {
-                    displacement: [state.displacement, 0.0],
-                    force: [state.force, 0.0],
-                    indentation: state.indentation,
-                    normal_force: state.normal_force,
-                    contact_radius: state.contact_radius,
-                    stick_radius: state.stick_radius,
-                    dissipated_energy: state.dissipated_energy,
-                    elastic_energy: state.elastic_energy,
-                    turning_points: committed.memory_depth().saturating_sub(1),
-                    regime: regime(state.regime),
-                }
+                let (state, depth) = (committed.state(), committed.memory_depth());
+                shown!(state, [state.displacement, 0.0], [state.force, 0.0], depth.saturating_sub(1))
             }
             Held::Planar(_, Stepped { committed, .. }) => {
                 let state = committed.state();
-                ss_contact_state {
-                    displacement: state.displacement,
-                    force: state.force,
-                    indentation: state.indentation,
-                    normal_force: state.normal_force,
-                    contact_radius: state.contact_radius,
-                    stick_radius: state.stick_radius,
-                    dissipated_energy: state.dissipated_energy,
-                    elastic_energy: state.elastic_energy,
-                    turning_points: 0,
-                    regime: regime(state.regime),
-                }
+                shown!(state, state.displacement, state.force, 0)
             }
         }
     }
