@@ -304,13 +304,12 @@ impl Row {
         };
         self.levels = (0..self.carried.len()).map(level).collect();
         let terms = prony.terms().len();
-        let springs = self.normal.chunks_exact(terms).zip(self.tangential.chunks_exact(terms));
-        let springs = springs.zip(&self.carried).zip(&*self.levels);
-        let load = |(((z, x), u), level): (((&[f64], &[f64]), &f64), &f64)| {
-            let p = self.indentation - level - prony.kept(z);
-            if p > 0.0 { [p, u - prony.kept(x)] } else { [0.0; 2] }
+        let load = |(index, level): (usize, &f64)| {
+            let kept = |of: &[f64]| prony.kept(&of[index * terms..][..terms]);
+            let p = self.indentation - level - kept(&self.normal);
+            if p > 0.0 { [p, self.carried[index] - kept(&self.tangential)] } else { [0.0; 2] }
         };
-        self.loads = springs.map(load).collect();
+        self.loads = self.levels.iter().enumerate().map(load).collect();
     }
 
     /// Makes one step of a time, s, straight in d and U.
