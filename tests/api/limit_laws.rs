@@ -116,11 +116,11 @@ async fn a_twisted_contact_is_stored_replayed_listed_and_drawn() {
     for (row, [force, torque]) in [(2, [false, true]), (6, [true, false])] {
         assert_eq!([!cell(row, "force").is_empty(), !cell(row, "torque").is_empty()], [force, torque], "{table}");
     }
-    // Torque over angle, with points on the way.
+    // Torque over angle, with points on the way, that of lifting off included.
     let drawn = good(replayed.get(&format!("{place}/loop?points_per_move=4")).await).await;
     let torques = drawn["torque"].as_array().unwrap();
-    assert_eq!(torques.iter().filter(|torque| !torque.is_null()).count(), 12, "{drawn}");
-    assert_eq!(drawn["force"].as_array().unwrap().iter().filter(|force| force.is_null()).count(), 12, "{drawn}");
+    assert_eq!(torques.iter().filter(|torque| !torque.is_null()).count(), 15, "{drawn}");
+    assert_eq!(drawn["force"].as_array().unwrap().iter().filter(|force| force.is_null()).count(), 15, "{drawn}");
     let svg = replayed.get(&format!("{place}/loop?last=4&format=svg")).await.text().await.unwrap();
     assert!(svg.contains("torque M") && svg.contains("angle of twist"), "{svg}");
 }
