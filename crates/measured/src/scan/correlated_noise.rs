@@ -1,4 +1,4 @@
-//! Noise that wanders along a line, as the height of a drifting instrument does, and what it adds to the errors.
+//! Noise that drifts along a line, as the height of a drifting instrument does, and what it adds to the errors.
 //!
 //! The curve follows a walk as if it were shape, so that the residual shows little of it. What differs between the two
 //! sides of the axis is noise whatever the shape, but for a tilt and a shift of the axis. So its covariance is taken as
@@ -37,7 +37,7 @@ struct Process {
     length: f64,
 }
 
-/// What noise that wanders adds to the covariance of the curvatures, in the units of the scan; `None` if it does not.
+/// What noise that drifts adds to the covariance of the curvatures, in the units of the scan; `None` without it.
 pub(super) fn covariance(fitted: &Fitted, scaled: &Scaled) -> Option<DMatrix<f64>> {
     if scaled.plane {
         return None;

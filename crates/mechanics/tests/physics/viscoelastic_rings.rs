@@ -185,7 +185,7 @@ impl Rings {
                     return self.q[ring].signum();
                 }
                 let slip = way - (self.along.free(ring, &self.matrix, &self.q) - self.along.u[ring]);
-                let back = sign[ring].abs() == 1.0 && slip * sign[ring] < -1e-14;
+                let back = sign[ring].abs() > 0.5 && slip * sign[ring] < -1e-14;
                 if back { 0.0 } else { sign[ring] }
             };
             let next: Vec<f64> = (0..RINGS).map(next).collect();
