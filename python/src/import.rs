@@ -48,8 +48,8 @@ pub fn read_loop(content: &[u8], hints: Vec<(String, String)>) -> PyResult<Strin
     written(files::measured_loop(content, &mapping(hints)?, &|| true))
 }
 
-/// The number that a text such as `20 um` says, in the unit `needed`, or in the SI unit of its own dimension; `None` for
-/// a text that does not begin with a number.
+/// The number that a text such as `20 um` says, in the unit `needed`, or in the SI unit of its own dimension; `None`
+/// for a text that does not begin with a number.
 #[pyfunction]
 #[pyo3(signature = (text, needed=None))]
 pub fn quantity(text: &str, needed: Option<&str>) -> PyResult<Option<f64>> {

@@ -9,8 +9,8 @@ import { formatNumber, formatQuantity, unitScale } from "./units.js";
 const STOPS = 160;
 
 const note = (plus, minus) =>
-  `Colour is the shear stress on the contact, green ${plus} and purple ${minus}, on a scale up to the largest value in ` +
-  "the contact; in the striped ring the last move slipped.";
+  `Colour is the shear stress on the contact, green ${plus} and purple ${minus}, on a scale up to the largest value ` +
+  "in the contact; in the striped ring the last move slipped.";
 
 /** The plot. */
 export function topView() {

@@ -1,4 +1,5 @@
-//! Stored contacts that adhere, have a shear strength or are twisted, replayed and in their history. Their values are tested in
+//! Stored contacts that adhere, have a shear strength or are twisted, replayed and in their history. Their values are
+//! tested in
 //! `crates/mechanics/tests/physics`, and what is refused of a document in `crates/compute/tests/documents`.
 
 use std::sync::Arc;

@@ -31,7 +31,8 @@ async fn an_empty_service_shows_an_example_and_makes_it_on_request() {
     let server = Process::with("memory:", &[]);
     let browser = crate::browser::Browser::start(1280, 900, false).await;
     browser.page.goto(&server.base).await.unwrap();
-    // Like bodies have half the reduced modulus of one on a rigid plane; after 20 reversals 17.3 % remain (Kraft & Pohrt).
+    // Like bodies have half the reduced modulus of one on a rigid plane; after 20 reversals 17.3 % remain (Kraft &
+    // Pohrt).
     let expected = format!("contact radius {}", hertz(10.0, 0.01, 2.0));
     browser.says("#example", &expected).await;
     browser.says("#example", "keeps a shear stress of 17 % of μ p_max").await;

@@ -18,8 +18,8 @@ const REVERSALS: RangeInclusive<usize> = 1..=99_999;
 
 requests! {
 /// One move, straight to its targets: at most one tangential target (`displacement`, `force`, `twist` or `torque`) and
-/// one normal target (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target
-/// displacement and twist stay, without a normal one the indentation stays.
+/// one normal target (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential
+/// target displacement and twist stay, without a normal one the indentation stays.
 #[schema(example = json!({"displacement": 1e-7}))]
 pub struct Move: Copy, Default {
     /// Tangential displacement of the indenter, m.

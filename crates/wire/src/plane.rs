@@ -81,8 +81,9 @@ impl Limit<Components> for Range {
 
 requests! {
 /// One move, straight to its targets: at most one tangential target (`displacement`, `force`, `twist` or `torque`) and
-/// one normal target (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential target
-/// displacement and twist stay, without a normal one the indentation stays. A pair [x, y] is a target in the plane.
+/// one normal target (`indentation` or `normal_force`), at least one in all or a `duration`. Without a tangential
+/// target displacement and twist stay, without a normal one the indentation stays. A pair [x, y] is a target in the
+/// plane.
 #[schema(example = json!({"displacement": [1e-7, 5e-8]}))]
 pub struct SimulatedMove: Copy, Default {
     /// Tangential displacement of the indenter, m, along x or [x, y].

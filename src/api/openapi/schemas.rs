@@ -28,8 +28,8 @@ fn describe_defaults(schema: &mut Value) {
     }
 }
 
-/// Closes the alternatives, and names them by the key that chooses, the first that is required: the names become names of
-/// types.
+/// Closes the alternatives, and names them by the key that chooses, the first that is required: the names become names
+/// of types.
 fn write_choices(schemas: &mut Map<String, Value>) {
     for (name, schema) in schemas {
         for choice in schema.get_mut("oneOf").and_then(Value::as_array_mut).into_iter().flatten() {

@@ -26,8 +26,8 @@ parameters! {
 
 /// Get the hysteresis loop of a contact
 ///
-/// Tangential force and displacement along moves, or torque and angle of twist, oldest first: a page, the newest, or all
-/// of them.
+/// Tangential force and displacement along moves, or torque and angle of twist, oldest first: a page, the newest, or
+/// all of them.
 #[utoipa::path(
     get, path = "/contacts/{id}/loop", tag = "contacts", params(ContactPath, MovesQuery, LoopQuery),
     responses((status = 200, description = "A page of the loop", body = LoopPage,

@@ -232,7 +232,7 @@ fn a_clean_line_whose_axis_is_beside_the_middle_keeps_it_or_says_so() {
 #[test]
 fn the_indentation_of_a_cone_is_too_small_only_where_its_tip_is_not_seen() {
     println!(
-        "| slope | tip (um) | points | mean distance (um) | mean error, in standard errors | standard error | within 3 |"
+        "| slope | tip (um) | points | mean distance (um) | mean error, in standard ones | standard one | within 3 |"
     );
     println!("|---|---|---|---|---|---|---|");
     for (slope, tip, a, points, is_seen) in [

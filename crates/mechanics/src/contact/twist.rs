@@ -109,8 +109,8 @@ impl Contact {
         }
     }
 
-    /// The torque at which the contact slides round at its present load, N m: (pi/2) mu E* int X^2 dy, which asks for the
-    /// load curve alone. `None` where the contact is not round, or slides by another law.
+    /// The torque at which the contact slides round at its present load, N m: (pi/2) mu E* int X^2 dy, which asks for
+    /// the load curve alone. `None` where the contact is not round, or slides by another law.
     ///
     /// ```
     #[doc = include_str!("../example.txt")]

@@ -84,8 +84,8 @@ impl Springs {
     }
 }
 
-/// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring to
-/// spring and on to `at_edge`; level from the centre to the first spring beyond it.
+/// -(1/pi) int_r^a u'(x)/sqrt(x^2 - r^2) dx + u(a)/(pi sqrt(a^2 - r^2)) of the displacement drawn straight from spring
+/// to spring and on to `at_edge`; level from the centre to the first spring beyond it.
 pub(super) fn from_displacements(nodes: impl Iterator<Item = (f64, f64)>, edge: f64, at_edge: f64, radius: f64) -> f64 {
     if radius > edge {
         return 0.0;

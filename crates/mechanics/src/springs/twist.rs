@@ -1,12 +1,13 @@
 //! A contact that is twisted under a load that changes, as a row of springs.
 //!
 //! A spring at x carries an angle w within +-B(x, d), and 16 G x^2 w dx of the torque. A change of the load changes B
-//! unevenly, by dB/dd = C K(1 - x^2/a^2)/a, C = mu E*/(2 pi G), from d = g(x) on (Jaeger 1995), so that the slip history
-//! of a constant load does not hold. But that rate falls where a grows, (E - K)/(1 - x^2/a^2) being negative, so that B
-//! is concave along a move straight in d or F_N and in the angle. A spring that slips is then at its bound at the end
-//! of the move, and one clamp is exact for it, however long the move. What is left is the sum over springs: another row
-//! of half as many makes the same moves in steps twice as long, and the difference is the stated error. Steps serve the
-//! friction work, whose bound is taken as straight within each, and a torque that is led while the load changes.
+//! unevenly, by dB/dd = C K(1 - x^2/a^2)/a, C = mu E*/(2 pi G), from d = g(x) on (Jaeger 1995), so that the slip
+//! history of a constant load does not hold. But that rate falls where a grows, (E - K)/(1 - x^2/a^2) being negative,
+//! so that B is concave along a move straight in d or F_N and in the angle. A spring that slips is then at its bound at
+//! the end of the move, and one clamp is exact for it, however long the move. What is left is the sum over springs:
+//! another row of half as many makes the same moves in steps twice as long, and the difference is the stated error.
+//! Steps serve the friction work, whose bound is taken as straight within each, and a torque that is led while the load
+//! changes.
 
 use std::f64::consts::PI;
 

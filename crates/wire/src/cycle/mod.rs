@@ -36,8 +36,9 @@ pub struct CycleRequest {
     /// What is prescribed as a cosine, and its amplitudes.
     pub drive: CycleDrive,
     /// Frequency, Hz, or a list of frequencies with the cycles of all amplitudes for each: of bodies with `prony`,
-    /// whose cycles depend on it. The load has then been held for long: the normal force of a preload, or its indentation.
-    /// Only a displacement is driven, and of the other options only `harmonics` is allowed. At most 100 000 cycles.
+    /// whose cycles depend on it. The load has then been held for long: the normal force of a preload, or its
+    /// indentation. Only a displacement is driven, and of the other options only `harmonics` is allowed. At most 100
+    /// 000 cycles.
     #[schema(value_type = Option<f64>)]
     pub frequency: Option<Amplitudes> = Within(FREQUENCIES, FREQUENCY),
     /// A machine in series with the contact: an amplitude of displacement or twist is then that of the machine.

@@ -45,8 +45,8 @@ pub struct SteadyCycle: Default omits Option {
     pub viscous_work: Option<f64>,
     /// The largest elastic energy of the tangential deformation in a cycle, J.
     pub max_elastic_energy: f64,
-    /// Force amplitude over displacement amplitude of the indenter, N/m, or torque over angle, N·m/rad; at zero amplitude
-    /// the tangent stiffness.
+    /// Force amplitude over displacement amplitude of the indenter, N/m, or torque over angle, N·m/rad; at zero
+    /// amplitude the tangent stiffness.
     pub secant_stiffness: f64,
     /// Stiffness of the contact just after a reversal, 2 G* a, N/m, under twist (16/3) G a³, N·m/rad; zero without
     /// friction.
