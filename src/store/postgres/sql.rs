@@ -13,9 +13,9 @@ macro_rules! channel {
 macro_rules! move_columns {
     () => {
         "sequence, at, at_ns, target_displacement, target_force, target_indentation, target_normal_force, \
-         target_twist, target_torque, relative, duration, tolerance, displacement, force, indentation, normal_force, contact_radius, \
-         stick_radius, regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, twist, torque, \
-         observed_force, observed_at, made_by"
+         target_twist, target_torque, relative, duration, tolerance, displacement, force, indentation, normal_force, \
+         contact_radius, stick_radius, regime, dissipated_energy, elastic_energy, memory_depth, time, viscous_work, \
+         twist, torque, observed_force, observed_at, made_by"
     };
 }
 
