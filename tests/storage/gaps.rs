@@ -62,7 +62,7 @@ async fn is_damaged(process: &Process, store: &str, (damaged, whole): (Uuid, Uui
     assert!(named.filter(|line| line.contains(missing)).count() >= 10, "{lines}");
     let checked = run(&["check", "--store", store]);
     let said = String::from_utf8(checked.stdout).unwrap();
-    assert!(said.starts_with(&format!("contact {damaged}: {missing}\n")) && said.contains(" 1 findings"), "{said}");
+    assert!(said.starts_with(&format!("contact {damaged}: {missing}\n")) && said.contains(": 1 finding\n"), "{said}");
 }
 
 #[tokio::test]

@@ -68,7 +68,7 @@ pub struct SteadyCycle: Default omits Option {
     /// How much of the contact slips.
     pub regime: Regime,
     /// The harmonics, if asked for: of the force, N, where the displacement is driven, and of the displacement of the
-    /// indenter, m, where the force is driven; of torque, N·m, and angle, rad, likewise.
+    /// indenter, m, where the force is driven; of torque, N·m, or angle, rad, where the contact is twisted.
     pub harmonics: Option<Vec<Harmonic>>,
     /// The friction work per area, if asked for.
     pub friction_work: Option<FrictionWork>,
