@@ -138,7 +138,7 @@ def _simulation(ax: Axes, result: Any, **options: Any) -> None:
 def _recorded(ax: Axes, result: Any, **options: Any) -> None:
     columns, _ = result.table()
     is_end = columns.get("part", np.ones(len(columns["force"]))) == 1.0
-    is_twisted = np.isfinite(columns.get("twist", [])).any()
+    is_twisted = np.isfinite(columns["twist"]).any()
     x, y, said = ("twist", "torque", TWIST) if is_twisted else ("displacement", "force", LOOP)
     _path(ax, result, (columns[x][is_end], columns[y][is_end]), said, **options)
 

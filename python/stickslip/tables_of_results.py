@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -84,8 +84,9 @@ def _history(rows: Rows[Any]) -> Table:
     columns = {"sequence": rows.sequence, "at": rows.at}
     units = {"sequence": "1", "at": "UTC"}
     state, state_units = _flat(_optional(rows._documents, "state"), "State")
-    columns |= state
-    units |= state_units
+    shifts, shift_units = _shifts_and_twists(state, len(rows))
+    columns |= state | shifts
+    units |= state_units | shift_units
     for part, schema, names in (
         ("cycle", "Cycle", {name: f"cycle_{name}" for name in schemas.FIELDS["Cycle"] if name != "to"}),
         (
@@ -101,13 +102,23 @@ def _history(rows: Rows[Any]) -> Table:
     return columns, units
 
 
+def _shifts_and_twists(columns: Mapping[str, Any], count: int) -> Table:
+    """The four columns that a table of moves always has, NaN where they do not apply."""
+    names = ("displacement", "force", "twist", "torque")
+    found = {name: columns.get(name, np.full(count, np.nan)) for name in names}
+    return found, {name: schemas.FIELDS["State"][name][1] or "" for name in names}
+
+
 def _loop(result: Record) -> Table:
     """The points of a loop, with what was measured beside what was predicted there."""
     columns, units = _own_columns(result)
+    shifts, shift_units = _shifts_and_twists(columns, len(result.force))
+    columns |= shifts
+    units |= shift_units
     measured = columns.get("observed_force", np.full(len(result.force), np.nan))
     columns["observed_force"] = measured
-    columns["predicted_force"] = np.where(np.isnan(measured), np.nan, result.force)
-    columns["innovation"] = measured - result.force
+    columns["predicted_force"] = np.where(np.isnan(measured), np.nan, columns["force"])
+    columns["innovation"] = measured - columns["force"]
     return columns, units | dict.fromkeys(("observed_force", "predicted_force", "innovation"), "N")
 
 
