@@ -88,13 +88,14 @@ pub(super) fn run<S: Solver>(
         let contact = solver.exact();
         contact.friction() * contact.normal_force() * contact.gross_slip_displacement()
     };
-    let mut most_work = slip_work(&solver);
+    let (mut most_work, mut by_springs) = (slip_work(&solver), false);
     let mut far = FarMove::from(&solver);
     follow(&mut solver, &simulation.plan, protocol.as_ref(), simulation.tolerance, stop, |_, solver| {
         largest = largest.max(solver.contact_radius());
         far.reach(solver);
         if curved > 0 {
             most_work = most_work.max(slip_work(solver));
+            by_springs |= solver.exact().count_and_steps().is_some();
             path_error = if all { path_error.max(solver.path_error()) } else { path_error };
         }
         if all {
@@ -117,7 +118,8 @@ pub(super) fn run<S: Solver>(
     stop.check()?;
     let path_error = path_error.max(solver.path_error());
     accuracy.force_error += path_error - solver.path_error();
-    let by_curves = curved > 0 && S::KIND == SolverKind::Exact && !solver.exact().has_memory();
+    // The work of springs has no stated error.
+    let by_curves = curved > 0 && S::KIND == SolverKind::Exact && !by_springs;
     accuracy.work_error = (by_curves && most_work > 0.0).then(|| solver.exact().work_error() / most_work);
     // A table, which may have noise, has no vertical edge.
     let indentation = summary.indentation.max(solver.exact().indenter().level_at_edge(largest));

@@ -208,3 +208,17 @@ fn a_sweep_has_angles_and_torques_where_the_contact_is_twisted() {
         assert_refused("/sweep", &sweep(output), ("invalid_input", "/outputs/0", "no such member"));
     }
 }
+
+#[test]
+fn the_error_of_the_friction_work_is_stated_of_curves_and_not_of_springs() {
+    let of_path = |moves: Value| good(post("/simulate", &of(&unit_ball(), &json!({"path": {"moves": moves}}))));
+    let pressed = of_path(json!([{"displacement": 0.3, "normal_force": 2.5}, {"displacement": -0.3}]));
+    assert!((1e-16..1e-8).contains(&number(&pressed["accuracy"]["work_error"])), "{}", pressed["accuracy"]);
+    let twisted = of_path(json!([{"twist": 0.3, "normal_force": 2.5}, {"twist": -0.3}]));
+    assert_eq!(
+        (twisted["accuracy"]["solver"].as_str(), twisted["accuracy"].get("work_error")),
+        (Some("springs"), None)
+    );
+    let straight = of_path(json!([{"displacement": 0.3}, {"normal_force": 2.5}]));
+    assert_eq!(straight["accuracy"].get("work_error"), None);
+}
