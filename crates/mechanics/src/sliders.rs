@@ -287,7 +287,8 @@ impl FirstLoading<'_> {
         let (mut force, mut moment) = (0.0, 0.0);
         for (&knot, &cap) in displacement.iter().zip(slip_force) {
             if knot > smallest {
-                for step in 0..=AMPLITUDES_BETWEEN {
+                // The end of one stretch is the beginning of the next.
+                for step in usize::from(from > smallest)..=AMPLITUDES_BETWEEN {
                     let amplitude = from + (knot - from) * step as f64 / AMPLITUDES_BETWEEN as f64;
                     let work = 4.0 * (force * amplitude - moment);
                     let exact = SteadyCycle::of(self.contact, amplitude).dissipated_energy();
