@@ -259,7 +259,7 @@ impl Study<'_> {
     }
 
     /// Climbs along the coordinates in turn, in steps that are halved where none leads up, until they are so small: the
-    /// best place, and the gain of the last two rounds. What a round has won is tried once more as a whole (Hooke and
+    /// best place, and the gain of the last two rounds. What a round has won is tried once more as a whole (Hooke &
     /// Jeeves 1961), so that a climb along a ridge gains speed.
     fn climb(
         &mut self,
