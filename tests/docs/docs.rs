@@ -56,6 +56,8 @@ async fn every_command_of_the_pages_runs_as_printed() {
         let text = page(name);
         let found = blocks(&text, "sh");
         assert_eq!(found.len(), count, "{name}");
+        // `head` may leave before curl has written all, which then fails: `sed -n` reads to the end.
+        assert!(found.iter().all(|(block, _)| !block.contains("| head")), "{name}: a reader that stops early");
         let said = run_page(&file("docs").join(name), &found, "-euo", &server);
         assert!(name == "gallery.md" || said.contains('{'), "{name}: {said}");
     }
