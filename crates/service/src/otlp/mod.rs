@@ -18,9 +18,10 @@ pub const SPANS: &str = "stickslip::spans";
 pub const REQUEST: &str = "request";
 
 /// A span of a part of a request, such as `store`.
+#[macro_export]
 macro_rules! part {
     ($name:literal) => {
         tracing::info_span!(target: $crate::otlp::SPANS, $name)
     };
 }
-pub(crate) use part;
+pub use part;

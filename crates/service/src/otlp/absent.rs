@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::time::Duration;
 
-use axum::http::HeaderMap;
+use http::HeaderMap;
 use tokio::runtime::Handle;
 use tracing::Span;
 use tracing_subscriber::layer::Identity;

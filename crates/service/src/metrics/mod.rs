@@ -21,6 +21,7 @@ pub const OWN_NAME: &str = "the name, the labels and the buckets of a metric are
 
 /// Defines a group of metrics: their struct, in which all of them are zero at first, and the list of them. The help
 /// text of a metric is its doc comment.
+#[macro_export]
 macro_rules! metrics {
     ($(#[$about:meta])* pub struct $group:ident {
         $($(#[doc = $help:literal])+ $field:ident: $kind:ident = $make:ident($name:literal $(, $bounds:expr)?),)+
@@ -45,7 +46,7 @@ macro_rules! metrics {
     };
 }
 
-pub(crate) use metrics;
+pub use metrics;
 
 /// A number that only grows.
 ///
