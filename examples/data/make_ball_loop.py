@@ -1,4 +1,4 @@
-"""Writes ball_loop.csv: three cycles of a steel ball on a hard plane as a fretting rig records them, with a fixed seed.
+"""Writes ball_loop.csv: three cycles of a steel ball on a steel plane as a fretting rig records them, with a fixed seed.
 
 The ball has a radius of 10 mm, the load is 10 N, the coefficient of friction 0.42. The rig drives the far end of a load cell and its
 holder: together they give 50 nm/N. The zero of the force is 0.15 N off; force and displacement have noise. The loop is steady
@@ -11,11 +11,11 @@ from pathlib import Path
 
 RADIUS, LOAD, FRICTION = 10e-3, 10.0, 0.42
 YOUNGS_MODULUS, POISSON_RATIO = 2.1e11, 0.3
-COMPLIANCE, AMPLITUDE, FORCE_OFFSET = 5e-8, 0.6e-6, 0.15
+COMPLIANCE, AMPLITUDE, FORCE_OFFSET = 5e-8, 0.8e-6, 0.15
 POINTS, CYCLES, FORCE_NOISE, DISPLACEMENT_NOISE = 250, 3, 0.03, 0.5e-9
 
-E_STAR = YOUNGS_MODULUS / (1 - POISSON_RATIO**2)
-G_STAR = 2 * YOUNGS_MODULUS / (1 + POISSON_RATIO) / (2 - POISSON_RATIO)
+E_STAR = YOUNGS_MODULUS / (1 - POISSON_RATIO**2) / 2
+G_STAR = YOUNGS_MODULUS / (1 + POISSON_RATIO) / (2 - POISSON_RATIO)
 INDENTATION = (3 * LOAD / (4 * E_STAR * RADIUS**0.5)) ** (2 / 3)
 GROSS_SLIP = FRICTION * E_STAR / G_STAR * INDENTATION
 
@@ -38,7 +38,7 @@ def through_machine(displacement: float) -> float:
 
 
 draw = random.Random(8)
-lines = ["# Fretting rig, steel ball on carbide, 10 N", "Time (s);Displacement (um);Force (N)"]
+lines = ["# Fretting rig, steel ball on steel, 10 N", "Time (s);Displacement (um);Force (N)"]
 for index in range(CYCLES * POINTS + 1):
     angle = 2 * math.pi * index / POINTS
     place = AMPLITUDE * math.cos(angle)

@@ -14,7 +14,7 @@ import requests
 
 SIDE = 1e-4  # m, of the square that the curve was computed for
 BODY = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}
-E_STAR = BODY["youngs_modulus"] / (1 - BODY["poisson_ratio"] ** 2)  # Pa, against a rigid body
+E_STAR = BODY["youngs_modulus"] / (1 - BODY["poisson_ratio"] ** 2) / 2  # Pa, of two such bodies
 FRICTION = 0.3
 NORMAL_FORCE = 1.0  # N
 
@@ -45,7 +45,7 @@ def contact(curve):
     }
     return {
         "profile": profile,
-        "material": {"bodies": [BODY, "rigid"]},
+        "material": {"bodies": [BODY, BODY]},
         "friction": FRICTION,
         "preload": {"normal_force": NORMAL_FORCE},
     }

@@ -16,7 +16,7 @@ FILE = Path(__file__).parents[1] / "data" / "ball_loop.csv"
 def main(file: str | Path = FILE) -> pandas.DataFrame:
     """What was found, with the intervals at 95 %."""
     steel = ss.Body("210 GPa", 0.3)
-    guess = ss.Definition(ss.Sphere("10 mm"), [steel, ss.RIGID], friction=0.3, normal_force="10 N")
+    guess = ss.Definition(ss.Sphere("10 mm"), [steel, steel], friction=0.3, normal_force="10 N")
     loop = ss.read_loop(file)
     free = ["friction", "g_star", "machine_compliance", "force_offset"]
     fit = ss.fit(guess, loop, free=free, start="steady")

@@ -4,6 +4,7 @@ import { FIELDS, contactView } from "./contact_view.js";
 import { latestOnly, notice, debounce } from "./dom.js";
 import { WITHOUT_STRESS } from "./form_options.js";
 import { isLine } from "./line_contact.js";
+import { hasMemory } from "./relaxation.js";
 import { alongOf, isTwisted } from "./state_text.js";
 
 /** Moves that are drawn of a long history, and moves and points of the loop that the service draws between their
@@ -41,8 +42,9 @@ export async function showContact(main, { id, tab }, signal, ready) {
     history,
     signal,
     friction: definition.friction,
-    // A contact that is known by its load curve alone has no stress.
-    hasStress: !WITHOUT_STRESS.includes(definition.profile.type),
+    // A contact that is known by its load curve alone has no stress, and that of bodies with memory is not computed.
+    hasStress: !WITHOUT_STRESS.includes(definition.profile.type) && !hasMemory(definition),
+    hasMemory: hasMemory(definition),
     isLine: isLine(definition),
     // A stick zone that a bulk stress moves is known at a constant load.
     hasBulk: definition.bulk !== undefined,
@@ -87,7 +89,7 @@ export async function showContact(main, { id, tab }, signal, ready) {
     const page = await call("GET", `/contacts/${id}/loop?${query}`, undefined, signal);
     const [x, y] = isTwisted(model.state) ? [page.twist, page.torque] : [page.displacement, page.force];
     const curved = page.sequence
-      .map((sequence, index) => [x?.[index] ?? null, y?.[index] ?? null, sequence])
+      .map((sequence, index) => [x?.[index] ?? null, y?.[index] ?? null, sequence, page.part[index]])
       .filter(([place]) => place !== null);
     const isDrawn = (sequence) => sequence >= page.sequence[0] && sequence <= page.sequence.at(-1);
     const straight = straightPath(model).filter(([, , sequence]) => !isDrawn(sequence));

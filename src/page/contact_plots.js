@@ -3,6 +3,7 @@ import { nearestIndex } from "./axis.js";
 import { Chart } from "./chart.js";
 import { columnsOf } from "./chart_menu.js";
 import { isLine, meanPressure, peaksOf, placesOf, zonesOf } from "./line_contact.js";
+import { forceOverTime } from "./relaxation.js";
 import { sideView } from "./side_view.js";
 import { alongOf, isTwisted } from "./state_text.js";
 import { topView } from "./top_view.js";
@@ -14,7 +15,7 @@ const TURNS =
 
 /** The plots, and a function that draws them from the model of a contact; `overlay` says what else the first two
  *  show. */
-export function contactPlots({ hasStress, definition }) {
+export function contactPlots({ hasStress, hasMemory, definition }) {
   const isAlongLine = isLine(definition);
   const loop = new Chart({
     name: "loop",
@@ -41,6 +42,8 @@ export function contactPlots({ hasStress, definition }) {
       "joined by straight lines.",
   });
 
+  const time = forceOverTime();
+
   // What is drawn over the loop has no moves of this contact.
   loop.more = ([, , sequence], { name }) => [sequence === undefined ? name : sequence ? `move ${sequence}` : "start"];
   loop.onhover = (hit) => work.showCursor(hit && atMove(work, hit.datum[2]));
@@ -58,9 +61,11 @@ export function contactPlots({ hasStress, definition }) {
       stress.draw(stressData(model, overlay.shear()));
       view.drawModel(model);
     }
+    if (hasMemory) time.drawModel(model);
     work.draw(energyData(model, data.recent !== undefined));
   };
-  return { all: hasStress ? [loop, stress, view, work] : [loop, work], loop, stress, view, work, draw };
+  const all = [loop, ...(hasStress ? [stress, view] : []), ...(hasMemory ? [time] : []), work];
+  return { all, loop, stress, view, time, work, draw };
 }
 
 /** The points of a move in the plot of energies. */
@@ -116,7 +121,8 @@ function recentPart(points, first, history) {
 export function rememberedTurns(first, history) {
   const states = [first, ...history].map(({ state }) => state);
   if (first.sequence > 0 || states.some((state) => state.indentation !== first.state.indentation)) return [];
-  if (states.some(isTwisted)) return [];
+  // Bodies with memory have no turning points that a move erases.
+  if (states.some((state) => isTwisted(state) || state.time !== undefined)) return [];
   const turns = [];
   let [direction, outer] = [0, 2];
   for (const [index, state] of states.entries()) {
@@ -146,7 +152,8 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   // What is far beyond slip has to be wide beside the least range, too.
   const reach = least.x ? [...least.x, ...least.x].map((x) => [x, 0, Infinity]) : [];
   const recent = recentPart([...path, ...reach], first, history);
-  const notes = [isComplete ? TURNS : "Only the last moves of this long history are drawn."];
+  const turns = state.time === undefined ? [TURNS] : [];
+  const notes = isComplete ? turns : ["Only the last moves of this long history are drawn."];
   return {
     recent,
     series: [
@@ -225,9 +232,9 @@ function stressData({ stress, state, friction, definition }, overlaid) {
 }
 
 /** The energies; `isRecent` has the axes fit those of the newest moves. */
-function energyData({ first, history, figures }, isRecent) {
+function energyData({ first, history, figures, hasMemory }, isRecent) {
   const all = [first, ...history];
-  const points = (of, states = all) => states.map(({ sequence, state }) => [sequence, state[of]]);
+  const points = (of, states = all) => states.map(({ sequence, state }) => [sequence, state[of] ?? 0]);
   const range = isRecent
     ? { recent: ["dissipated_energy", "elastic_energy"].flatMap((of) => points(of, all.slice(-RECENT - 1))) }
     : {
@@ -241,6 +248,7 @@ function energyData({ first, history, figures }, isRecent) {
     series: [
       { name: "friction work", kind: "work", points: points("dissipated_energy") },
       { name: "stored", kind: "stored", points: points("elastic_energy") },
+      ...(hasMemory ? [{ name: "work of the bodies", kind: "bound", points: points("viscous_work") }] : []),
     ],
   };
 }

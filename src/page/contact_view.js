@@ -58,7 +58,8 @@ export function contactView(model, contact, changed) {
   );
 
   // The columns of cards of each tab; some have plots, requests, and a part that follows the state.
-  const { loop, stress, view: contactFrom, work } = plots;
+  const { loop, stress, view: contactFrom, time, work } = plots;
+  const { hasMemory } = model;
   const fit = fittedLoop(model);
   const crack = model.hasStress && crackCard(model);
   /** @type {Record<string, any[][]>} */
@@ -68,16 +69,17 @@ export function contactView(model, contact, changed) {
           [loop, contactFrom],
           [stress, work, path],
         ]
-      : [[loop, path], [work]],
-    loop: [[fit.form], [fit.results]],
+      : [[loop, path], hasMemory ? [time, work] : [work]],
+    // Bodies with memory have neither fits nor closed cycles.
+    loop: !hasMemory && [[fit.form], [fit.results]],
     crack: crack && [[crack.form], [crack.results, belowSurfaceCard(model)]],
-    damping: [[steadyCard(model), cycleStudyCard(model), mapCard(model)], [responseCard(model)]],
+    damping: !hasMemory && [[steadyCard(model), cycleStudyCard(model), mapCard(model)], [responseCard(model)]],
     residual: model.hasStress && [
       [protocolCard(model), ...(model.hasBulk ? [] : [protocolSearchCard(model)])],
       model.hasBulk ? [] : [residualCard(model)],
     ],
-    // The solvers that are compared are of round contacts.
-    accuracy: model.isLine ? [[trust]] : [[trust], [accuracyCard(model)]],
+    // The solvers that are compared are of round contacts of elastic bodies.
+    accuracy: model.isLine || hasMemory ? [[trust]] : [[trust], [accuracyCard(model)]],
   };
   const offered = Object.fromEntries(Object.entries(lists).filter(([, list]) => list));
   const views = mapped(offered, (list, tab) => ({

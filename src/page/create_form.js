@@ -8,6 +8,7 @@ import { WITHOUT_STRESS } from "./form_options.js";
 import { isLine, meanPressure, placesOf } from "./line_contact.js";
 import { bulkFields, materialFields, preloadFields } from "./material_fields.js";
 import { profileFields } from "./profile_fields.js";
+import { hasMemory, pronyFields } from "./relaxation.js";
 import { conductanceFigures } from "./state_text.js";
 import { formatNumber, formatQuantity } from "./units.js";
 import { showWarnings, warningList } from "./warning_list.js";
@@ -32,6 +33,7 @@ export function createForm(main, signal) {
   const profile = profileFields(form, () => "/profile", changed);
   const material = materialFields(form, changed);
   const friction = new NumberField(form, () => "/friction", { label: "Coefficient of friction μ", value: "0.3" });
+  const memory = pronyFields(form, changed);
   const bulk = bulkFields(form);
   const preload = preloadFields(form, changed);
   const definition = () => ({
@@ -40,6 +42,7 @@ export function createForm(main, signal) {
     friction: friction.value,
     preload: preload.value(),
     bulk: bulk.value(),
+    prony: memory.value(),
   });
   const body = () => ({ ...(label.value ? { label: label.value } : {}), ...definition() });
 
@@ -64,7 +67,7 @@ export function createForm(main, signal) {
     try {
       await form.settled();
       const contact = form.standingIn(definition);
-      const drawn = !WITHOUT_STRESS.includes(contact.profile.type);
+      const drawn = !WITHOUT_STRESS.includes(contact.profile.type) && !hasMemory(contact);
       const stress = drawn ? { stress: { points: 200, fields: ["pressure"] } } : {};
       const reply = await call(
         "POST",
@@ -115,7 +118,15 @@ export function createForm(main, signal) {
       "form",
       { class: "create", onsubmit: submit, oninput: changed, onchange: changed },
       el("section", { class: "card" }, el("h2", {}, "Shape"), profile.element),
-      el("section", { class: "card" }, el("h2", {}, "Bodies"), material.element, friction.element, bulk.element),
+      el(
+        "section",
+        { class: "card" },
+        el("h2", {}, "Bodies"),
+        material.element,
+        friction.element,
+        memory.element,
+        bulk.element,
+      ),
       el(
         "section",
         { class: "card" },

@@ -5,6 +5,7 @@ import { answerOf, el, noticing } from "./dom.js";
 import { goBack } from "./go_back.js";
 import { moveControl } from "./move_controls.js";
 import { virginContact } from "./protocol_run.js";
+import { paceOfMoves } from "./relaxation.js";
 
 /** As the style sheet has it: windows in which the card stands at the lower edge, folded but for the displacement. */
 const NARROW = matchMedia("(max-width: 62rem)");
@@ -24,6 +25,8 @@ async function isMeant(model, displacement) {
 /** The card, the choices of units, and a function that shows a state. */
 export function moveHands(model) {
   const { figures } = model;
+  const pace = model.hasMemory ? paceOfMoves(model) : null;
+  const move = (target) => model.move(pace ? pace.timed(target) : target);
   const reach = (state) => Math.max(model.reach(state), Math.abs(state.displacement ?? 0));
   const displacement = moveControl({
     name: "displacement",
@@ -33,7 +36,7 @@ export function moveHands(model) {
     limits: (state) => [-reach(state), reach(state)],
     send: async (wanted) => {
       if (Math.abs(wanted) > reach(model.state) && !(await isMeant(model, wanted))) throw new Error("Not sent.");
-      await model.move({ displacement: wanted });
+      await move({ displacement: wanted });
     },
   });
   const force = moveControl({
@@ -45,7 +48,7 @@ export function moveHands(model) {
       const limit = 0.999 * model.friction * state.normal_force || 1;
       return [-limit, limit];
     },
-    send: (wanted) => model.move({ force: wanted }),
+    send: async (wanted) => move({ force: wanted }),
   });
   const load = moveControl({
     name: "load",
@@ -53,7 +56,7 @@ export function moveHands(model) {
     unit: "N",
     value: (state) => state.normal_force,
     limits: (state) => [0, Math.max(2 * figures.normal_force, state.normal_force) || 10],
-    send: (wanted) => model.move({ normal_force: wanted }),
+    send: async (wanted) => move({ normal_force: wanted }),
   });
   if (model.hasBulk) load.element.hidden = true;
   const back = goBack(model);
@@ -62,7 +65,7 @@ export function moveHands(model) {
       "button",
       {
         type: "button",
-        onclick: noticing(() => model.move({ displacement: to() })),
+        onclick: noticing(async () => move({ displacement: to() })),
       },
       text,
     );
@@ -88,6 +91,7 @@ export function moveHands(model) {
     { class: "card hands", "aria-label": "Move it" },
     el("h2", {}, "Move it"),
     displacement.element,
+    pace?.element,
     more,
   );
   const controls = [displacement, force, load];

@@ -113,7 +113,12 @@ export function stateText(state, { friction, history, first, measured, stress, i
       ...(stress && state.normal_force > 0 ? [figure("Largest shear stress", shearText(stress.residual))] : []),
       ...conductanceFigures(state),
       figure("Friction work W", `${formatQuantity(state.dissipated_energy, "J")}`),
-      figure("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`),
+      ...(state.time === undefined
+        ? [figure("Slip history", `${state.memory_depth} ${state.memory_depth === 1 ? "piece" : "pieces"}`)]
+        : [
+            figure("Work of the bodies", formatQuantity(state.viscous_work, "J")),
+            figure("Time t", formatQuantity(state.time, "s")),
+          ]),
       ...(measured ? [figure("Measured friction μ", measuredText(measured))] : []),
     ),
   ];

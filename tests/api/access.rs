@@ -22,19 +22,21 @@ use uuid::Uuid;
 /// Method and path of every endpoint with the roles that may call it, as `docs/access.md` lists them; none means
 /// everybody. A test of the documentation compares the list with the routes.
 fn endpoints() -> Vec<(String, String, &'static [&'static str])> {
-    let (_, table) = include_str!("../../docs/access.md").split_once("| route | needs |\n|---|---|\n").unwrap();
-    let row = |line: &str| {
-        let cells: Vec<&str> = line.split('`').collect();
-        let (method, path) = cells[1].split_once(' ').unwrap();
-        let roles: &[&str] = match cells.get(3) {
-            Some(&"read") => &["read", "write"],
-            Some(&"write") => &["write"],
-            Some(&"metrics") => &["metrics"],
+    let (_, table) = include_str!("../../docs/access.md").split_once("| needs | routes |\n|---|---|\n").unwrap();
+    let row = |line: &'static str| {
+        let (needs, routes) = line.trim_matches(['|', ' ']).split_once(" | ").unwrap();
+        let roles: &[&str] = match needs.trim_matches('`') {
+            "read" => &["read", "write"],
+            "write" => &["write"],
+            "metrics" => &["metrics"],
             _ => &[],
         };
-        (method.to_owned(), path.to_owned(), roles)
+        routes.split(", ").map(move |route| {
+            let (method, path) = route.trim_matches('`').split_once(' ').unwrap();
+            (method.to_owned(), path.to_owned(), roles)
+        })
     };
-    table.lines().take_while(|line| line.starts_with('|')).map(row).collect()
+    table.lines().take_while(|line| line.starts_with('|')).flat_map(row).collect()
 }
 
 /// The first body that the document shows for an endpoint.

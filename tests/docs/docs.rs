@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use stickslip::access::Role;
 use stickslip::api::need;
 use stickslip_wire::Code;
 
@@ -284,16 +285,20 @@ fn a_floor_uses_those_below_it_alone() {
 #[test]
 fn the_page_of_access_lists_every_route_with_what_it_needs() {
     let document = document();
-    let row = |(method, path, _): (String, &str, _)| {
-        let needs = need(&method, path).map_or("no key".to_owned(), |role| format!("`{}`", role.name()));
-        (path.to_owned(), format!("| `{method} {path}` | {needs} |"))
-    };
-    let mut rows: Vec<_> = operations(&document).map(row).collect();
-    rows.sort();
+    let mut routes: Vec<_> = operations(&document).map(|(method, path, _)| (path.to_owned(), method)).collect();
+    routes.sort();
+    let rows: Vec<String> = [Some(Role::Read), Some(Role::Write), Some(Role::Metrics), None]
+        .map(|role| {
+            let needs = role.map_or("no key".to_owned(), |role| format!("`{}`", role.name()));
+            let its = routes.iter().filter(|(path, method)| need(method, path) == role);
+            let its: Vec<_> = its.map(|(path, method)| format!("`{method} {path}`")).collect();
+            format!("| {needs} | {} |", its.join(", "))
+        })
+        .into();
     let page = page("access.md");
-    let (_, table) = page.split_once("| route | needs |\n|---|---|\n").unwrap();
+    let (_, table) = page.split_once("| needs | routes |\n|---|---|\n").unwrap();
     let listed: Vec<&str> = table.lines().take_while(|line| line.starts_with('|')).collect();
-    assert_eq!(listed, rows.iter().map(|(_, row)| row.as_str()).collect::<Vec<_>>());
+    assert_eq!(listed, rows);
 }
 
 /// The page is printed anew by `UPDATE=1 cargo test --test docs errors`.

@@ -399,6 +399,9 @@ async fn dashboard_a_file_of_a_bench_becomes_the_friction_that_is_shown_live() {
     let scene = begin("live").await;
     let browser = &scene.browser;
     let client = &scene.server.client;
+    let file = std::fs::read_to_string("examples/data/ball_contact.json").unwrap();
+    let bench = client.create(&serde_json::from_str(&file).unwrap(), &Options::default()).await.unwrap();
+    scene.open(&bench, "").await;
     // The rows of the file as a bench would send them, without the compliance of the rig and the zero of the force.
     let text = std::fs::read_to_string("examples/data/ball_loop.csv").unwrap();
     let number = |cell: &str| cell.replace(',', ".").parse::<f64>();
@@ -411,7 +414,7 @@ async fn dashboard_a_file_of_a_bench_becomes_the_friction_that_is_shown_live() {
     let others = observations.split_off(20);
     let observe = async |observations| {
         let request = ObservationsRequest { observations };
-        client.observe(scene.ball.id, &request, &Options::default()).await.unwrap().friction
+        client.observe(bench.id, &request, &Options::default()).await.unwrap().friction
     };
     // Before a cycle has closed there are points, and no friction.
     assert!(observe(observations).await.is_none());

@@ -10,6 +10,7 @@ mod forms;
 mod journeys;
 mod line_contacts;
 mod moving;
+mod other_laws;
 mod plots;
 mod scene;
 mod views;

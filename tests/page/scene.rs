@@ -1,4 +1,4 @@
-//! What most tests begin with: a service, the steel ball of `examples/data/ball_contact.json`, and a browser.
+//! What most tests begin with: a service, the steel ball of `crate::common`, and a browser.
 
 use stickslip_wire::client::Options;
 use stickslip_wire::{CreateRequest, Move, MoveRequest, NewSession, State};
@@ -27,9 +27,7 @@ impl Scene {
     }
 
     pub async fn over(server: Process, width: u32, height: u32, dark: bool) -> Scene {
-        let file = std::fs::read_to_string("examples/data/ball_contact.json").unwrap();
-        let request: CreateRequest = serde_json::from_str(&file).unwrap();
-        let request = CreateRequest { label: Some("Steel ball".to_owned()), ..request };
+        let request = CreateRequest { label: Some("Steel ball".to_owned()), ..crate::common::create() };
         let ball = server.client.create(&request, &Options::default()).await.unwrap();
         Scene { server, ball, browser: Browser::start(width, height, dark).await }
     }
