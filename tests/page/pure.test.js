@@ -11,6 +11,7 @@ import { latestOnly } from "../../src/page/dom.js";
 import { MEANINGS } from "../../src/page/meanings.js";
 import { isEccentric, meanPressure, peaksOf, zonesOf } from "../../src/page/line_contact.js";
 import { pythonCode } from "../../src/page/python_code.js";
+import { followed } from "../../src/page/relaxation.js";
 import { gridPoints } from "../../src/page/section_plot.js";
 import { addressOf, contactAddress } from "../../src/page/tabs.js";
 import * as units from "../../src/page/units.js";
@@ -43,6 +44,28 @@ test("what is no number, or may be two, is said in words", () => {
     assert.equal(typeof units.parseNumber(text), "string", "it is not read as a number");
   }
   for (const text of ["1.000", "12,5", "0,300", "1000,000e-2", ""]) assert.equal(units.numberMistake(text), undefined);
+});
+
+test("the force over the time is followed at the even pace of each move, and jumps where a move takes none", () => {
+  const at = (sequence, time) => ({ sequence, state: { time } });
+  const all = [at(0, undefined), at(1, 2), at(2, 2), at(3, 6)];
+  const path = [
+    [0, 0, 0],
+    [1, 5, 1, 0.5],
+    [2, 9, 1, 1],
+    [3, 4, 2, 0.5],
+    [3, 1, 2],
+    [3, 0, 3, 0.25],
+    [0, 0, 9],
+  ];
+  assert.deepEqual(followed(all, path), [
+    [0, 0, 0],
+    [1, 5, 1],
+    [2, 9, 1],
+    [2, 4, 2],
+    [2, 1, 2],
+    [3, 0, 3],
+  ]);
 });
 
 test("numbers have a true minus, raised powers and the prefix that fits", () => {
@@ -213,9 +236,15 @@ print(api.fit(${definition}, loops=[{"force": [1, None]}]))`,
   assert.match(pythonCode([{ method: "POST", path: "/contacts", body: contact }], "", false), /from_definition/);
 });
 
-test("every meaning is that of a figure of the page", () => {
+test("every figure of the page has a meaning, and every meaning a figure", () => {
   const folder = new URL("../../src/page/", import.meta.url);
   const scripts = readdirSync(folder).filter((name) => name.endsWith(".js") && name !== "meanings.js");
   const shown = scripts.map((name) => readFileSync(new URL(name, folder), "utf8")).join("");
   for (const name of Object.keys(MEANINGS)) assert.ok(shown.includes(`"${name}"`), name);
+  // A sentence in place of a number says it itself.
+  const sentences = ["Of", "Wear"];
+  const figures = [...shown.matchAll(/figure\(\s*(?:[^"()]*(?:\([^()]*\))?[^"()]*\? )?"([^"]+)"(?: : "([^"]+)")?/g)];
+  const names = figures.flatMap(([, one, other]) => [one, other]).filter((name) => name && !sentences.includes(name));
+  assert.ok(names.length > 40, `${names.length} figures`);
+  for (const name of names) assert.ok(name in MEANINGS, name);
 });
