@@ -5,10 +5,12 @@ import { Fields, JsonField } from "./form_fields.js";
 import { study } from "./study.js";
 import { formatQuantity } from "./units.js";
 
-/** Five cycles to half of gross slip. */
-function halfSlip({ figures }) {
-  const displacement = 0.5 * figures.gross_slip_displacement || 1e-7;
-  return { cycles: { displacement: Number(displacement.toPrecision(3)), count: 5 } };
+/** Five cycles to half of gross slip; of bodies with memory one, whose moves take their time. */
+function halfSlip({ figures, hasMemory }) {
+  const displacement = Number((0.5 * figures.gross_slip_displacement || 1e-7).toPrecision(3));
+  return hasMemory
+    ? { displacement: [displacement, -displacement, displacement], duration: 0.01 }
+    : { cycles: { displacement, count: 5 } };
 }
 
 /** The card that runs a path on a contact. */

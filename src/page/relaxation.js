@@ -123,15 +123,16 @@ export function forceOverTime() {
     title: "Force over the time",
     x: { label: "Time t", unit: "s" },
     y: { label: "Force", unit: "N" },
-    note: "The tangential force is followed through moves; the load is known at their ends, joined by straight lines.",
+    note: "The tangential force is followed through moves; its limit is known at their ends, joined by straight lines.",
   });
-  const drawModel = ({ first, history, path, state }) => {
+  const drawModel = ({ first, history, path, state, friction }) => {
     const all = [first, ...history];
-    const ends = (of) => all.map(({ state: at, sequence }) => [at.time ?? 0, at[of], sequence]);
+    const limit = (sign) => all.map(({ state: at }) => [at.time ?? 0, sign * friction * at.normal_force]);
     chart.draw({
       series: [
         { name: "tangential force F", kind: "tau", points: followed(all, path) },
-        { name: "load F_N", kind: "pressure", points: ends("normal_force"), dots: true, size: 2 },
+        { name: "limit ±μ F_N", kind: "bound", points: limit(1) },
+        { name: "limit ±μ F_N", kind: "bound", points: limit(-1), hover: false, legend: false },
       ],
       least: { x: [0, 1e-3], y: [0] },
       marks: [{ x: state.time ?? 0, y: state.force, class: state.regime }],
