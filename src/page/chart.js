@@ -169,7 +169,7 @@ export class Chart {
     }
     spreadNames(this);
     this.inked = this.mode === "radius" || this.data.layer ? [] : inkedPlaces(this);
-    if (this.data.note) this.note.textContent = this.data.note;
+    if (this.data.note !== undefined) this.note.textContent = this.data.note;
     drawLegend(this);
     this.refresh();
   }

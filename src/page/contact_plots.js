@@ -152,7 +152,7 @@ function loopData({ path, state, friction, first, history, slip, isComplete }, o
   // What is far beyond slip has to be wide beside the least range, too.
   const reach = least.x ? [...least.x, ...least.x].map((x) => [x, 0, Infinity]) : [];
   const recent = recentPart([...path, ...reach], first, history);
-  const turns = state.time === undefined ? [TURNS] : [];
+  const turns = state.time === undefined && !twists ? [TURNS] : [];
   const notes = isComplete ? turns : ["Only the last moves of this long history are drawn."];
   return {
     recent,

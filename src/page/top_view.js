@@ -38,6 +38,7 @@ export function topView() {
     const half = (radius || 1e-6) * 1.12;
     const ways = isTwisted(model.state) ? ["anticlockwise", "clockwise"] : ["towards +x", "towards −x"];
     chart.note.textContent = note(...ways);
+    chart.x.label = isTwisted(model.state) ? "x" : "x, along the motion";
     const points = stress.radius.map((r, index) => [r, stress.shear[index]]);
     chart.draw({
       series: [{ name: "shear stress τ", points, kind: "none", line: false }],

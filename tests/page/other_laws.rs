@@ -82,6 +82,9 @@ async fn a_twist_is_seen_from_above_and_as_torque_over_angle() {
     browser.until(&format!("{titles}.includes('Angle of twist ω') && {titles}.includes('Torque M')")).await;
     browser.says(".side", "Angle ω 1 mrad").await;
     browser.says("#plot-above .note", "green anticlockwise").await;
+    // No turning points are marked, and no direction of a motion.
+    let said = format!("{} {}", browser.text("#plot-loop").await, browser.text("#plot-above").await);
+    assert!(!said.contains("turning points") && !said.contains("along the motion"), "{said}");
     // The stuck disc has its part of the contact, and stripes lie around it.
     let part = "document.querySelector('#plot-above .front').r.baseVal.value / \
                 document.querySelector('#plot-above .disc').r.baseVal.value";

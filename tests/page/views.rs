@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use serde_json::{Value, json};
 use stickslip::access::{Role, new_key};
-use stickslip_wire::Move;
 use stickslip_wire::client::Options;
+use stickslip_wire::{CreateRequest, Move};
 use tempfile::tempdir;
 
 use crate::axe;
@@ -369,7 +369,11 @@ async fn it_asks_for_a_key_where_one_is_needed_and_finds_by_label() {
 
 #[tokio::test]
 async fn pictures_of_the_documentation() {
-    let scene = Scene::over(Process::with("memory:", &[]), 1440, 1130, false).await;
+    let mut scene = Scene::over(Process::with("memory:", &[]), 1440, 1130, false).await;
+    // The ball of the other examples, on steel.
+    let file = std::fs::read_to_string("examples/data/ball_contact.json").unwrap();
+    let request = CreateRequest { label: Some("Steel ball".to_owned()), ..serde_json::from_str(&file).unwrap() };
+    scene.ball = scene.server.client.create(&request, &Options::default()).await.unwrap();
     let browser = &scene.browser;
     scene.moved(&[0.9, -0.7, 0.5, -0.3, 0.4]).await;
     scene.open(&scene.ball, "").await;
