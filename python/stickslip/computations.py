@@ -280,11 +280,12 @@ class Computations(ABC):
             The quantities that the fit determines. If left out, the loops decide: friction, stiffness and force offset,
             the compliance of the machine if a loop reaches gross slip, and what the score tests show to differ from
             zero. If left out: friction, g_star and force_offset. One of 'friction', 'g_star', 'e_star', 'radius',
-            'machine_compliance', 'displacement_offset', 'force_offset', 'drift', 'delay', 'gain_drift'.
+            'machine_compliance', 'displacement_offset', 'force_offset', 'drift', 'delay', 'gain_drift',
+            'shear_strength'.
         known : bool | KnownValues | dict
             Values known from elsewhere. One with a standard error takes part in the fit, whether it is free or not. A
             number alone is a value that is held fixed. May have `delay`, `displacement_offset`, `drift`, `e_star`,
-            `force_offset`, `friction`, `g_star`, `gain_drift`, `machine_compliance`, `radius`.
+            `force_offset`, `friction`, `g_star`, `gain_drift`, `machine_compliance`, `radius`, `shear_strength`.
         noise : bool | FitNoise | dict
             The noise of the measured numbers; if left out, it is estimated from the loops. May have `displacement`,
             `force`.

@@ -29,7 +29,7 @@ FirstStroke: TypeAlias = Literal["given", "gross_slip", "partial", "stay"]
 """The beginning of a path."""
 FirstTurn: TypeAlias = Literal["up", "down"]
 """Where cycles begin and end."""
-FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "machine_compliance", "displacement_offset", "force_offset", "drift", "delay", "gain_drift"]
+FitParameter: TypeAlias = Literal["friction", "g_star", "e_star", "radius", "machine_compliance", "displacement_offset", "force_offset", "drift", "delay", "gain_drift", "shear_strength"]
 """A quantity of the contact or of the bench that a fit can determine."""
 ForceUnit: TypeAlias = Literal["N", "mN", "uN", "kN"]
 """A unit of force."""
@@ -382,6 +382,8 @@ class KnownValues(TypedDict, total=False):
     """Compliance of the machine in series with the contact, m/N."""
     radius: KnownValue | Mapping[str, Any]
     """Radius of a sphere, m."""
+    shear_strength: KnownValue | Mapping[str, Any]
+    """Shear strength of the interface τ₀ beside friction, Pa."""
 
 
 class LineScan(TypedDict):

@@ -19,16 +19,26 @@ const PARAMETERS = {
   drift: ["drift of the displacement", "m/s", false],
   delay: ["delay of the force", "s", false],
   gain_drift: ["drift of the gain", "1/s", false],
+  shear_strength: ["shear strength τ₀", "Pa", false],
   e_star: ["modulus E*", "Pa", false, true],
   radius: ["radius", "m", false, true],
 };
 /** The symbols of what a combination is made of. */
-const SYMBOLS = { g_star: "G*", e_star: "E*", radius: "R" };
+const SYMBOLS = {
+  g_star: "G*",
+  e_star: "E*",
+  radius: "R",
+  contact_radius: "a",
+  friction: "μ",
+  normal_force: "F",
+  shear_strength: "τ₀",
+  pi: "π",
+};
 
 /** The name of a parameter, or of a combination such as `g_star * (radius/e_star)^(1/3)`, as children. */
 function inWords(name) {
   if (name in PARAMETERS) return [PARAMETERS[name][0]];
-  const symbols = name.replace(/[a-z_]+/g, (part) => SYMBOLS[part] ?? part).replaceAll(" * ", " · ");
+  const symbols = name.replace(/[a-z_]+/g, (part) => SYMBOLS[part] ?? part).replaceAll(" * ", " · ").replaceAll("^2", "²");
   const end = symbols.indexOf("^(");
   return end < 0 ? [symbols] : [symbols.slice(0, end), el("sup", {}, symbols.slice(end + 2, -1))];
 }

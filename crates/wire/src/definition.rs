@@ -206,13 +206,21 @@ impl ContactDefinition {
 
     /// As [`ContactDefinition::check_any`], for what knows Coulomb's law alone.
     pub fn check(&self, at: JsonPath<'_>, profiles: &dyn Prepare, faults: &mut Faults) -> Option<SharedSetup> {
-        match self.check_any(at, profiles, faults)?.coulomb("this computation") {
-            Ok(setup) => Some(setup),
-            Err(error) => {
-                faults.unanswerable(at.member(member_of_law(&error)), error);
-                None
-            }
-        }
+        let setup = self.check_any(at, profiles, faults)?;
+        faults.of_law(setup.coulomb("this computation"), at)
+    }
+
+    /// As [`ContactDefinition::check_any`], for what knows elastic bodies and a shear strength, and no adhesion.
+    pub fn check_limited(
+        &self,
+        at: JsonPath<'_>,
+        profiles: &dyn Prepare,
+        faults: &mut Faults,
+    ) -> Option<FrictionSetup> {
+        let setup = self.check_any(at, profiles, faults)?;
+        let mut without = setup.clone();
+        without.friction.limit.shear_strength = 0.0;
+        faults.of_law(without.coulomb("this computation"), at).map(|_| setup)
     }
 
     /// The checked setup with its profile prepared by `profiles`; its faults are noted at `at`.
@@ -301,6 +309,13 @@ impl ContactDefinition {
             Quantity::YoungsModulus | Quantity::PoissonRatio => "/material/bodies",
             _ => "/profile",
         }
+    }
+}
+
+impl Faults {
+    /// The setup of a contact at this place, unless a computation does not know its law.
+    fn of_law(&mut self, setup: Result<SharedSetup, mechanics::Error>, at: JsonPath<'_>) -> Option<SharedSetup> {
+        setup.map_err(|error| self.unanswerable(at.member(member_of_law(&error)), error)).ok()
     }
 }
 

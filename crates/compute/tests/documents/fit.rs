@@ -10,7 +10,11 @@ use crate::{assert_refused, good, post, problem, written};
 /// Displacement and force of the ball, m and N, by `/simulate`, from its first move through two cycles; the amplitude
 /// is in units of the displacement of gross slip.
 fn two_cycles(amplitude: f64) -> [Vec<f64>; 2] {
-    let still = good(post("/simulate", &of(&ball(), &json!({"path": {"force": [0.0]}}))));
+    two_cycles_of(&ball(), amplitude)
+}
+
+fn two_cycles_of(contact: &Value, amplitude: f64) -> [Vec<f64>; 2] {
+    let still = good(post("/simulate", &of(contact, &json!({"path": {"force": [0.0]}}))));
     let amplitude = amplitude * number(&still["contact"]["gross_slip_displacement"]);
     // Up in 50 steps, and two cycles of 200.
     let place = |step: i32| {
@@ -18,14 +22,18 @@ fn two_cycles(amplitude: f64) -> [Vec<f64>; 2] {
         if step < 50 { step } else { (since - 100).abs() - 50 }
     };
     let targets: Vec<f64> = (0..=450).map(|step| amplitude * f64::from(place(step)) / 50.0).collect();
-    let reply = good(post("/simulate", &of(&ball(), &json!({"path": {"displacement": targets}}))));
+    let reply = good(post("/simulate", &of(contact, &json!({"path": {"displacement": targets}}))));
     let steps = reply["steps"].as_array().unwrap();
     ["displacement", "force"].map(|name| steps.iter().map(|step| number(&step[name])).collect())
 }
 
 /// The second of them, which is steady.
 fn steady(amplitude: f64) -> [Vec<f64>; 2] {
-    two_cycles(amplitude).map(|column| column[column.len() - 201..].to_vec())
+    steady_of(&ball(), amplitude)
+}
+
+fn steady_of(contact: &Value, amplitude: f64) -> [Vec<f64>; 2] {
+    two_cycles_of(contact, amplitude).map(|column| column[column.len() - 201..].to_vec())
 }
 
 /// Noise that is the same every time, between -1 and 1.
@@ -91,6 +99,40 @@ fn friction_and_modulus_of_a_loop_are_found_again_and_make_its_contact() {
     let rows: Value = serde_json::from_str(&rows).unwrap();
     let residual = |row: &Value| number(&row["measured"]) - number(&row["fitted"]) - number(&row["residual"]);
     assert!(rows.as_array().unwrap().iter().all(|row| residual(row).abs() < 1e-15), "{rows}");
+}
+
+#[test]
+fn a_shear_strength_is_fitted_beside_friction_and_belongs_to_the_contact() {
+    let strong = with(ball(), "/shear_strength", json!(3e7));
+    let free = json!(["friction", "g_star", "shear_strength"]);
+    let asked = |factor: f64| with(body(&steady_of(&strong, factor)), "/free", free.clone());
+    let reply = fitted(&asked(2.0));
+    for (name, truth) in [("friction", 0.3), ("shear_strength", 3e7)] {
+        assert!((number(&reply["estimates"][name]["value"]) / truth - 1.0).abs() < 1e-6, "{}", reply["estimates"]);
+        assert!(reply["identifiable"].as_array().unwrap().contains(&json!(name)), "{}", reply["identifiable"]);
+    }
+    assert_eq!(reply["contact"]["shear_strength"], reply["estimates"]["shear_strength"]["value"]);
+    let force = |contact: &Value| {
+        let still = good(post("/simulate", &of(contact, &json!({"path": {"force": [0.0]}}))));
+        number(&still["contact"]["gross_slip_force"])
+    };
+    assert!((force(&reply["contact"]) / force(&strong) - 1.0).abs() < 1e-6);
+    // A strength of the definition stays where it is not free.
+    let kept = with(body(&steady_of(&strong, 2.0)), "/contact/shear_strength", json!(3e7));
+    let kept = fitted(&kept);
+    assert_eq!(kept["contact"]["shear_strength"], json!(3e7));
+    assert!((number(&kept["estimates"]["friction"]["value"]) / 0.3 - 1.0).abs() < 1e-6, "{}", kept["estimates"]);
+    // One that was left out is named.
+    let plain = fitted(&body(&steady_of(&strong, 2.0)));
+    assert!(codes(&plain).contains(&"omitted_parameter"), "{}", plain["warnings"]);
+    // What has no strength, and what the fit does not know.
+    let rough = json!({"type": "asperities", "radii": [1e-3, 2e-3, 3e-3], "gaps": [0.0, -1e-7, 3e-6]});
+    let rough = with(asked(2.0), "/contact/profile", rough);
+    assert_refused("/fit", &rough, ("invalid_input", "/free/2", "cannot be fitted on this profile"));
+    let sticky = with(with(asked(2.0), "/contact/adhesion", json!({"work": 0.05})), "/contact/friction", json!(0.0));
+    assert_refused("/fit", &sticky, ("invalid_input", "/contact/adhesion", "adhesion"));
+    let negative = with(asked(2.0), "/known/shear_strength", json!({"value": -1.0}));
+    assert_refused("/fit", &negative, ("invalid_input", "/known/shear_strength/value", "0 to"));
 }
 
 #[test]

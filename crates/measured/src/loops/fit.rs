@@ -2,7 +2,7 @@
 //! parameters.
 
 use super::least_squares::{Control, Data, Rows};
-use super::record::{Branches, clamp_friction, stiffness};
+use super::record::{Branches, area, clamp_friction, stiffness};
 use super::{Error, Noise, Parameter, start};
 use crate::robust::{HUBER, OUTLIER, robust_deviation};
 use stickslip_mechanics::range;
@@ -27,8 +27,9 @@ const VARIANCE_STEPS: usize = 10;
 const LEAST_CONTRAST: f64 = 1e-3;
 /// A sample was not farther from where it was measured than this many standard deviations.
 const MOST_SHIFT: f64 = 3.0;
-/// A compliance below this share of the contact's is tried against none at all.
-const LEAST_COMPLIANCE: f64 = 1e-2;
+/// A compliance below this share of the contact's, and a friction or a shear strength that carries less than this share
+/// of the force, is tried against none at all.
+const LEAST: f64 = 1e-2;
 
 /// The minimum.
 #[derive(Clone, Debug)]
@@ -228,20 +229,35 @@ pub(super) fn within_bounds(
     let layout = &data.layout;
     let mut free: Vec<usize> = (0..layout.columns()).filter(|column| !held.contains(column)).collect();
     let sought = |parameter: Parameter, free: &[usize]| layout.column(parameter).filter(|column| free.contains(column));
-    let least = LEAST_COMPLIANCE / stiffness(&data.records[0].contact);
+    let contact = &data.records[0].contact;
+    let force = data.records.iter().map(|record| record.half_force).fold(0.0, f64::max);
+    let with_strength = layout.value(from, Parameter::ShearStrength) > 0.0
+        || layout.column(Parameter::ShearStrength).is_some_and(|column| free.contains(&column));
+    let friction = with_strength.then_some((Parameter::Friction, LEAST * force / contact.normal_force()));
+    let from_zero = [
+        (Parameter::MachineCompliance, LEAST / stiffness(contact)),
+        (Parameter::ShearStrength, LEAST * force / area(contact)),
+    ];
+    let from_zero = from_zero.into_iter().chain(friction);
     let mut values = from.to_vec();
-    if let Some(column) = sought(Parameter::MachineCompliance, &free) {
-        values[column] = values[column].max(1e-3 * least);
+    for (parameter, least) in from_zero.clone() {
+        if let Some(column) = sought(parameter, &free) {
+            values[column] = values[column].max(1e-3 * least);
+        }
     }
     let mut cost = data.minimise(&mut values, factors, &free, control)?;
     let mut bound = Vec::new();
-    if let Some(column) = sought(Parameter::MachineCompliance, &free).filter(|&column| values[column] < least) {
+    for (parameter, least) in from_zero {
+        let Some(column) = sought(parameter, &free).filter(|&column| values[column] < least) else { continue };
+        if !data.may_be_zero(parameter, &values) {
+            continue;
+        }
         let without: Vec<usize> = free.iter().copied().filter(|&one| one != column).collect();
-        let mut rigid = values.clone();
-        rigid[column] = 0.0;
-        let rigid_cost = data.minimise(&mut rigid, factors, &without, control)?;
-        if rigid_cost <= cost {
-            (values, cost, free) = (rigid, rigid_cost, without);
+        let mut zero = values.clone();
+        zero[column] = 0.0;
+        let zero_cost = data.minimise(&mut zero, factors, &without, control)?;
+        if zero_cost <= cost {
+            (values, cost, free) = (zero, zero_cost, without);
             bound.push(column);
         }
     }

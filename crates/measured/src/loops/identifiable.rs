@@ -4,11 +4,14 @@ use super::fit::Fitted;
 use super::intervals::Covariance;
 use super::least_squares::Data;
 use super::parameter::combination;
-use super::record::stiffness;
+use super::record::{area, stiffness};
 use super::{Estimate, Parameter};
 
 /// A positive quantity is determined if its standard error is below this share of it.
 const DETERMINED: f64 = 0.1;
+
+/// The force of gross slip: what a loop under one load says of friction and a shear strength.
+const SLIP_FORCE: &str = "friction * normal_force + pi * contact_radius^2 * shear_strength";
 
 /// The names of what the data determine: parameters, and combinations where a parameter by itself is not determined.
 pub(super) fn identifiable(
@@ -55,7 +58,17 @@ pub(super) fn identifiable(
             names.push("1/(2 * g_star * contact_radius) + machine_compliance".to_owned());
         }
     }
-    if let (Some(friction), Some((parameter, column))) = (data.layout.column(Parameter::Friction), modulus)
+    let columns = [Parameter::Friction, Parameter::ShearStrength].map(|one| data.layout.column(one));
+    if let [Some(friction), Some(strength)] = columns
+        && (open(Parameter::Friction) || open(Parameter::ShearStrength))
+    {
+        let shares = [contact.normal_force(), area(contact)];
+        let total = shares[0] * fitted.values[friction] + shares[1] * fitted.values[strength];
+        if relative(&[(friction, shares[0] / total), (strength, shares[1] / total)]) < DETERMINED {
+            names.push(SLIP_FORCE.to_owned());
+        }
+    }
+    if let ([Some(friction), None], Some((parameter, column))) = (columns, modulus)
         && open(Parameter::Friction)
     {
         let power = f64::from(parameter.power_of_stiffness()) / 3.0;

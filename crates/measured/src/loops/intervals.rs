@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::Error;
 use super::fit::{Fitted, within_bounds};
 use super::least_squares::{Control, Data};
-use super::{Error, Parameter};
 
 /// The 97.5 % quantile of the normal distribution.
 const NORMAL_QUANTILE: f64 = 1.959_963_984_540_054;
@@ -109,14 +109,14 @@ pub(super) fn interval(
     let Some(error) = covariance.error(column) else { return Ok([None; 2]) };
     let quantile = quantile(fitted.used().saturating_sub(data.layout.columns()), noise_known);
     let value = fitted.values[column];
-    let compliance = data.layout.column(Parameter::MachineCompliance) == Some(column);
-    let logarithmic = data.logarithmic(column) && !compliance;
+    let from_zero = data.layout.parameters[column].is_some_and(|one| data.may_be_zero(one, &fitted.values));
+    let logarithmic = data.logarithmic(column) && !from_zero;
     let at = |step: f64| if logarithmic { value * step.exp() } else { value + step };
     let first = if logarithmic { (quantile * error / value).min(1.0) } else { quantile * error };
     let widest = if logarithmic { WIDEST.ln() } else { WIDEST * quantile * error };
     let mut ends = [None; 2];
     for (end, sign) in ends.iter_mut().zip([-1.0, 1.0]) {
-        let floor = if compliance && sign < 0.0 { value } else { f64::INFINITY };
+        let floor = if from_zero && sign < 0.0 { value } else { f64::INFINITY };
         // Where the last step below the quantile ended: the valley is followed from there.
         let mut nearest = fitted.values.clone();
         // Steps with the roots of the rise below and above the quantile.

@@ -5,7 +5,7 @@ use nalgebra::storage::Owned;
 use nalgebra::{DMatrix, DVector, Dyn};
 
 use super::model::{Layout, predict};
-use super::record::{Branches, Sample};
+use super::record::{Branches, Sample, area};
 use super::{Error, Parameter};
 
 /// A sum of columns that is known beforehand, as one more measurement.
@@ -128,6 +128,16 @@ impl Data {
         self.layout.parameters[column].is_some_and(Parameter::positive)
     }
 
+    /// Whether a parameter may be zero, which its logarithm never reaches: friction where a shear strength carries shear.
+    pub(super) fn may_be_zero(&self, parameter: Parameter, values: &[f64]) -> bool {
+        match parameter {
+            Parameter::MachineCompliance => true,
+            Parameter::ShearStrength => self.layout.value(values, Parameter::Friction) > 0.0,
+            Parameter::Friction => self.layout.value(values, Parameter::ShearStrength) > 0.0,
+            _ => false,
+        }
+    }
+
     /// The change of a value with its coordinate in the search.
     fn by_coordinate(&self, values: &[f64], column: usize) -> f64 {
         if self.logarithmic(column) { values[column] } else { self.scales[column] }
@@ -242,6 +252,7 @@ pub(super) fn scales(layout: &Layout, records: &[Branches]) -> Vec<f64> {
         .iter()
         .map(|parameter| match parameter {
             Some(Parameter::ForceOffset) => force,
+            Some(Parameter::ShearStrength) => force / area(&records[0].contact),
             Some(Parameter::Drift) if time > 0.0 => way / time,
             Some(Parameter::Delay) if time > 0.0 => time,
             Some(Parameter::GainDrift) if time > 0.0 => 1.0 / time,

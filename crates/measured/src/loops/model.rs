@@ -53,10 +53,15 @@ impl Layout {
                 _ => product,
             }
         });
+        let g_star = self.defined[Parameter::GStar as usize] * stiffness;
+        // A strength acts on the area, which goes with the square of the radius.
+        let area = (g_star / self.value(values, Parameter::GStar)).powi(2);
         Bench {
             friction: self.value(values, Parameter::Friction),
-            g_star: self.defined[Parameter::GStar as usize] * stiffness,
+            g_star,
             compliance: self.value(values, Parameter::MachineCompliance),
+            strength: self.value(values, Parameter::ShearStrength) * area,
+            area,
         }
     }
 }
@@ -213,7 +218,9 @@ impl Walk<'_> {
             None => (&self.origin, 1.0),
         };
         let way = direction * (place - from.place) / twice;
-        let LoadingPoint { force, slope, by_friction, by_modulus, by_compliance } = self.curve.at(way.max(0.0));
+        let LoadingPoint { force, slope, by_friction, by_modulus, by_compliance, by_strength } =
+            self.curve.at(way.max(0.0));
+        let Bench { strength, area, .. } = self.curve.bench;
         // Noise may put a point before the beginning of its branch: there the branch goes on straight.
         let force = force + slope * way.min(0.0);
         let sign = direction * twice;
@@ -223,10 +230,12 @@ impl Walk<'_> {
         for (column, parameter) in self.layout.sought() {
             gradient[column] += sign
                 * match parameter {
-                    Parameter::Friction => by_friction / self.values[column],
+                    Parameter::Friction => by_friction,
                     Parameter::MachineCompliance => by_compliance,
+                    Parameter::ShearStrength => by_strength * area,
                     _ => {
-                        by_modulus * f64::from(parameter.power_of_stiffness())
+                        let by_area = if parameter == Parameter::GStar { 0.0 } else { 2.0 * strength * by_strength };
+                        (by_modulus + by_area) * f64::from(parameter.power_of_stiffness())
                             / 3.0
                             / self.values[column].abs().max(f64::MIN_POSITIVE)
                     }

@@ -117,7 +117,9 @@ fn small_change(data: &Data, parameter: Parameter) -> Option<f64> {
         Parameter::Drift => (duration > 0.0).then_some(SMALL * way / duration),
         Parameter::GainDrift => (duration > 0.0).then_some(SMALL / duration),
         Parameter::MachineCompliance => Some(SMALL / stiffness(&record.contact)),
-        Parameter::Friction | Parameter::GStar | Parameter::EStar | Parameter::Radius => None,
+        Parameter::Friction | Parameter::GStar | Parameter::EStar | Parameter::Radius | Parameter::ShearStrength => {
+            None
+        }
     }
 }
 
@@ -125,8 +127,9 @@ impl Omitted {
     /// Whether the data show that the parameter is not what it was taken for.
     #[must_use]
     pub fn is_significant(&self) -> bool {
-        // No machine has a negative compliance: something else is wrong then.
-        let possible = self.parameter != Parameter::MachineCompliance || self.value.is_none_or(|value| value > 0.0);
+        // No machine has a negative compliance, and no interface a negative strength: something else is wrong then.
+        let is_positive = matches!(self.parameter, Parameter::MachineCompliance | Parameter::ShearStrength);
+        let possible = !is_positive || self.value.is_none_or(|value| value > 0.0);
         possible && self.z.is_some_and(|z| z.abs() > SIGNIFICANT)
     }
 }

@@ -1,7 +1,7 @@
 //! From the minimum to what is reported: estimates, residual, curves, the fitted contact.
 
 use stickslip_mechanics::profile::Profile;
-use stickslip_mechanics::{Contact, Elasticity, Preload, Setup, Sphere};
+use stickslip_mechanics::{Contact, Elasticity, Friction, Preload, Setup, Sphere, range};
 
 use super::fit::Fitted;
 use super::identifiable::identifiable;
@@ -141,10 +141,13 @@ pub(super) fn fitted_contact(task: &Task, data: &Data, fitted: &Fitted) -> Resul
         Profile::Sphere(_) => Profile::Sphere(Sphere::new(value(Parameter::Radius))?),
         profile => profile.clone(),
     };
+    let strength = value(Parameter::ShearStrength);
+    // Less than the mechanics computes with is none.
+    let shear_strength = if strength < range::MIN_POSITIVE_FRICTION * g_star { 0.0 } else { strength };
     Ok(Contact::new(Setup {
         profile,
         elasticity: if same { elasticity } else { Elasticity::effective(e_star, g_star)? },
-        friction: value(Parameter::Friction),
+        friction: Friction { shear_strength, ..Friction::from(value(Parameter::Friction)) },
         preload: Preload::NormalForce(task.contact.normal_force()),
     })?)
 }

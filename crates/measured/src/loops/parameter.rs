@@ -28,11 +28,13 @@ pub enum Parameter {
     Delay,
     /// The rate at which the gain of the force drifts, over the gain at time zero, 1/s.
     GainDrift,
+    /// The shear strength tau_0 of the interface, Pa; at least zero.
+    ShearStrength,
 }
 
 impl Parameter {
     /// All of them.
-    pub const ALL: [Parameter; 10] = [
+    pub const ALL: [Parameter; 11] = [
         Parameter::Friction,
         Parameter::GStar,
         Parameter::EStar,
@@ -43,6 +45,7 @@ impl Parameter {
         Parameter::Drift,
         Parameter::Delay,
         Parameter::GainDrift,
+        Parameter::ShearStrength,
     ];
 
     /// Its name in requests and replies.
@@ -59,6 +62,7 @@ impl Parameter {
             Parameter::Drift => "drift",
             Parameter::Delay => "delay",
             Parameter::GainDrift => "gain_drift",
+            Parameter::ShearStrength => "shear_strength",
         }
     }
 
@@ -70,7 +74,8 @@ impl Parameter {
 
     /// Whether it is above zero, so that the search is for its logarithm.
     pub(super) fn positive(self) -> bool {
-        self.power_of_stiffness() != 0 || matches!(self, Parameter::Friction | Parameter::MachineCompliance)
+        self.power_of_stiffness() != 0
+            || matches!(self, Parameter::Friction | Parameter::MachineCompliance | Parameter::ShearStrength)
     }
 
     /// Three times the power with which the initial stiffness of a sphere at a given load, 2 G* a, goes with it.
@@ -87,6 +92,7 @@ impl Parameter {
     pub(super) fn of(self, contact: &Contact) -> f64 {
         match (self, contact.profile()) {
             (Parameter::Friction, _) => contact.friction(),
+            (Parameter::ShearStrength, _) => contact.shear_strength(),
             (Parameter::GStar, _) => contact.elasticity().g_star(),
             (Parameter::EStar, _) => contact.elasticity().e_star(),
             (Parameter::Radius, Profile::Sphere(sphere)) => sphere.curvature_radius(),
@@ -112,6 +118,7 @@ pub(super) fn is_of(parameter: Parameter, profile: &Profile) -> bool {
     match parameter {
         Parameter::EStar | Parameter::Radius => matches!(profile, Profile::Sphere(_)),
         Parameter::GStar => !matches!(profile, Profile::Ellipsoid(_) | Profile::Line(_)),
+        Parameter::ShearStrength => profile.has_stress_field() && !matches!(profile, Profile::Line(_)),
         _ => true,
     }
 }

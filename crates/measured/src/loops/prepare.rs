@@ -2,7 +2,7 @@
 
 use super::least_squares::{Data, Prior, scales};
 use super::model::Layout;
-use super::record::{Branches, Clock, Turn, forms, times};
+use super::record::{Branches, Clock, Turn, forms, frictional, times};
 use super::reversals::reversals;
 use super::{Error, FEW_TURNS, FEWEST_POINTS, MOST_REFINED_TURNS, Parameter, Record, Start, Task, parameter};
 use crate::robust::median;
@@ -23,9 +23,20 @@ pub(super) struct Preliminary {
 /// [`Error`], which names what the records lack.
 pub(super) fn prepare(task: &Task, with_compliance: bool, preliminary: Preliminary) -> Result<Data, Error> {
     let Task { contact, records, free, known, noise } = task;
-    if contact.friction() <= 0.0 || contact.normal_force() <= 0.0 {
+    let defined = Parameter::ALL.map(|parameter| parameter.of(contact));
+    let mut held = defined;
+    for known in known {
+        held[known.parameter as usize] = known.value;
+    }
+    let [friction, strength] = [Parameter::Friction, Parameter::ShearStrength].map(|one| held[one as usize]);
+    let with_strength = strength > 0.0 || free.contains(&Parameter::ShearStrength);
+    if (friction <= 0.0 && !with_strength) || contact.normal_force() <= 0.0 {
         return Err(Error::NoContact { record: None });
     }
+    if with_strength && !parameter::is_of(Parameter::ShearStrength, contact.profile()) {
+        return Err(Error::NotOfProfile { parameter: Parameter::ShearStrength });
+    }
+    let base = frictional(contact)?;
     let uncertain = |parameter| known.iter().find(|known| known.parameter == parameter && known.standard_error > 0.0);
     parameter::check(free, |parameter| uncertain(parameter).is_some(), contact.profile())?;
     let timed = |parameter: &Parameter| parameter.needs_time() && *parameter != Parameter::Drift;
@@ -46,11 +57,6 @@ pub(super) fn prepare(task: &Task, with_compliance: bool, preliminary: Prelimina
         wanted && (virgin || parameter != Parameter::DisplacementOffset)
     };
     let parameters: Vec<Parameter> = Parameter::ALL.into_iter().filter(|&parameter| sought(parameter)).collect();
-    let defined = Parameter::ALL.map(|parameter| parameter.of(contact));
-    let mut held = defined;
-    for known in known {
-        held[known.parameter as usize] = known.value;
-    }
     if timeless {
         // The numbers of the points are times then, and a velocity in m/s says nothing.
         held[Parameter::Drift as usize] = 0.0;
@@ -67,7 +73,7 @@ pub(super) fn prepare(task: &Task, with_compliance: bool, preliminary: Prelimina
         };
         let clock =
             Clock { drift, delay: preliminary.delay.unwrap_or(held[Parameter::Delay as usize]), counts: timeless };
-        let branches = Branches::new(record, index, contact, noise.displacement, clock)?;
+        let branches = Branches::new(record, index, &base, noise.displacement, (clock, with_strength))?;
         branches.check(index, stiffness_sought && !with_compliance)?;
         prepared.push(branches);
     }

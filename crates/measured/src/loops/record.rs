@@ -8,7 +8,7 @@ use super::turns::{Form, corner_share, form};
 use super::velocity::Velocity;
 use super::{Error, FEWEST_POINTS, MOST_POINTS, Record, Start, quantised};
 use crate::robust::{median, quantile};
-use stickslip_mechanics::{Contact, range};
+use stickslip_mechanics::{Contact, Preload, Setup, range};
 
 /// Forces are compared after this share at either end is left out: outliers.
 const OUTLYING: f64 = 0.02;
@@ -110,7 +110,7 @@ impl Branches {
         index: usize,
         contact: &Contact,
         noise: Option<f64>,
-        clock: Clock,
+        (clock, with_strength): (Clock, bool),
     ) -> Result<Branches, Error> {
         let Record { displacement, force, normal_force, start, weight, .. } = record;
         let contact = contact.pressed(normal_force.unwrap_or(contact.normal_force()))?;
@@ -213,7 +213,7 @@ impl Branches {
             turn_in_gap,
             corner_share,
             extremes: [highest, lowest],
-            curve: SampledCurve::new(&contact),
+            curve: SampledCurve::new(&contact, with_strength),
             contact,
             half_force: 0.5 * (high - low),
             middle_force: 0.5 * (high + low),
@@ -300,9 +300,27 @@ impl Branches {
     }
 }
 
+/// A contact with the geometry of a definition and friction alone, of any coefficient: what curves are sampled of.
+pub(super) fn frictional(contact: &Contact) -> Result<Contact, Error> {
+    if contact.shear_strength() <= 0.0 && contact.friction() > 0.0 {
+        return Ok(contact.clone());
+    }
+    Ok(Contact::new(Setup {
+        profile: contact.profile().clone(),
+        elasticity: contact.elasticity(),
+        friction: if contact.friction() > 0.0 { contact.friction() } else { 1.0 },
+        preload: Preload::NormalForce(contact.normal_force()),
+    })?)
+}
+
 /// The stiffness of a contact as defined, 2 G* a, N/m.
 pub(super) fn stiffness(contact: &Contact) -> f64 {
     2.0 * contact.elasticity().g_star() * contact.stiffness_radius()
+}
+
+/// The area of a contact, m^2.
+pub(super) fn area(contact: &Contact) -> f64 {
+    std::f64::consts::PI * contact.contact_radius() * contact.contact_radius()
 }
 
 /// The times of a record, s, or the numbers of its points.

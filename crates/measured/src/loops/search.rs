@@ -35,7 +35,8 @@ pub(super) fn fit(mut task: Task, noise: Noise, proceed: &dyn Fn() -> bool) -> R
         let held = task.known.iter().any(|known| known.parameter == parameter && known.standard_error <= 0.0);
         !held && is_of(parameter, &profile) && !task.free.contains(&parameter)
     };
-    let usual = [Parameter::Friction, Parameter::GStar, Parameter::ForceOffset];
+    let carrying = if task.contact.friction() > 0.0 { Parameter::Friction } else { Parameter::ShearStrength };
+    let usual = [carrying, Parameter::GStar, Parameter::ForceOffset];
     task.free = usual.into_iter().filter(|&parameter| open(&task, parameter)).collect();
     let mut best = search(&task, noise, proceed)?;
     let bench = best.data.layout.bench(&best.fitted.values);

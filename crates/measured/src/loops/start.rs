@@ -2,7 +2,7 @@
 
 use super::least_squares::{Control, Data};
 use super::model::Layout;
-use super::record::{Branches, clamp_friction, stiffness};
+use super::record::{Branches, area, clamp_friction, stiffness};
 use super::{Error, Parameter, Start};
 use crate::robust::median;
 
@@ -10,6 +10,9 @@ use crate::robust::median;
 const REACHED: [f64; 4] = [1.0, 0.8, 0.5, 0.2];
 /// Shares of the measured compliance that the contact may have.
 const CONTACT_SHARES: [f64; 4] = [1.0, 0.7, 0.4, 0.15];
+/// Shares of the friction force that a shear strength may have beside friction, and the most of it that is known.
+const STRENGTH_SHARES: [f64; 2] = [0.2, 0.8];
+const MOST_KNOWN: f64 = 0.9;
 /// Samples, of all records, with which the guesses are compared.
 const GLANCED: usize = 200;
 /// How many of the guesses are followed.
@@ -57,14 +60,23 @@ fn guesses_of(data: &Data) -> Vec<Vec<f64>> {
         (true, false) => vec![1.0, (measured / defined).min(1.0)],
         (false, _) => vec![(measured / defined).clamp(0.01, 1.0)],
     };
-    let reached = if sought(Parameter::Friction) { &REACHED[..] } else { &REACHED[..1] };
+    let [of_friction, of_strength] = [Parameter::Friction, Parameter::ShearStrength].map(sought);
+    let reached = if of_friction || of_strength { &REACHED[..] } else { &REACHED[..1] };
+    let strength = records.iter().map(|record| record.half_force / area(&record.contact)).fold(0.0, f64::max);
+    let held = |parameter: Parameter| layout.held[parameter as usize];
+    let by_strength = match (of_friction, of_strength) {
+        (true, true) => STRENGTH_SHARES.to_vec(),
+        (true, false) => vec![(held(Parameter::ShearStrength) / strength).min(MOST_KNOWN)],
+        (false, _) => vec![1.0 - (held(Parameter::Friction) / friction).min(MOST_KNOWN)],
+    };
     let mut guesses = Vec::new();
-    for &share in &shares {
+    for (&share, &by_strength) in shares.iter().flat_map(|share| by_strength.iter().map(move |one| (share, one))) {
         for &reached in reached {
             let mut values = vec![0.0; layout.columns()];
             for (column, parameter) in layout.sought() {
                 values[column] = match parameter {
-                    Parameter::Friction => clamp_friction(friction / reached),
+                    Parameter::Friction => clamp_friction((1.0 - by_strength) * friction / reached),
+                    Parameter::ShearStrength => by_strength * strength / reached,
                     Parameter::MachineCompliance => (1.0 - share).max(0.01) / measured,
                     Parameter::DisplacementOffset => offset(records, layout),
                     Parameter::ForceOffset => force_offset(records),

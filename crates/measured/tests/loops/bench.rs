@@ -2,7 +2,7 @@
 
 use stickslip_measured::loops::{Known, Noise, Parameter, Record, Start, Task};
 use stickslip_mechanics::profile::Profile;
-use stickslip_mechanics::{Contact, Elasticity, Move, Preload, Setup, Sphere, Tangential};
+use stickslip_mechanics::{Contact, Elasticity, Friction, Move, Preload, Setup, Sphere, Tangential};
 
 pub const E_STAR: f64 = 1.15e11;
 
@@ -11,6 +11,7 @@ pub const E_STAR: f64 = 1.15e11;
 pub struct Bench {
     pub profile: Profile,
     pub friction: f64,
+    pub shear_strength: f64,
     pub g_star: f64,
     pub normal_force: f64,
     pub compliance: f64,
@@ -23,6 +24,7 @@ impl Default for Bench {
         Bench {
             profile: Profile::Sphere(Sphere::new(0.01).unwrap()),
             friction: 0.42,
+            shear_strength: 0.0,
             g_star: 7e10,
             normal_force: 10.0,
             compliance: 0.0,
@@ -34,7 +36,8 @@ impl Default for Bench {
 
 impl Bench {
     pub fn contact(&self) -> Contact {
-        contact(self.profile.clone(), self.friction, self.g_star, self.normal_force)
+        let friction = Friction { shear_strength: self.shear_strength, ..Friction::from(self.friction) };
+        contact(self.profile.clone(), friction, self.g_star, self.normal_force)
     }
 
     /// Displacement of gross slip, m.
@@ -79,7 +82,7 @@ impl Bench {
 
     /// A fit that begins with another contact.
     pub fn task(&self, records: Vec<Record>, free: &[Parameter]) -> Task {
-        let contact = contact(self.profile.clone(), 0.3, 8.5e10, self.normal_force);
+        let contact = contact(self.profile.clone(), 0.3.into(), 8.5e10, self.normal_force);
         Task { contact, records, free: free.to_vec(), known: vec![], noise: Noise::default() }
     }
 }
@@ -88,7 +91,7 @@ pub fn sine(amplitude: f64, points: usize, cycles: f64) -> impl Iterator<Item = 
     (0..points).map(move |point| amplitude * (std::f64::consts::TAU * cycles * point as f64 / points as f64).sin())
 }
 
-fn contact(profile: Profile, friction: f64, g_star: f64, normal_force: f64) -> Contact {
+fn contact(profile: Profile, friction: Friction, g_star: f64, normal_force: f64) -> Contact {
     let elasticity = Elasticity::effective(E_STAR, g_star).unwrap();
     Contact::new(Setup { profile, elasticity, friction, preload: Preload::NormalForce(normal_force) }).unwrap()
 }

@@ -9,4 +9,5 @@ mod quantised;
 mod recovery;
 mod scenes;
 mod statistics;
+mod strength;
 mod unmodelled;

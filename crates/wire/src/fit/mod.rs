@@ -72,7 +72,7 @@ impl FitRequest {
 
 impl Document for FitRequest {
     /// Its loops are in SI units, whatever `units` says.
-    type Checked = (FitRequest, SharedSetup);
+    type Checked = (FitRequest, FrictionSetup);
 
     fn profile(&self) -> Option<DefinedProfile<'_>> {
         Some(self.contact.defined_profile("/contact/profile"))
@@ -80,7 +80,7 @@ impl Document for FitRequest {
 
     fn checked(mut self, profiles: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let root = JsonPath::Root;
-        let setup = self.contact.check(root.member("contact"), profiles, faults);
+        let setup = self.contact.check_limited(root.member("contact"), profiles, faults);
         // A drift that is known moves nothing in a record without times.
         let known = self.known.iter().flat_map(KnownValues::iter).map(|(parameter, _)| parameter);
         let known = known.filter(|parameter| *parameter != FitParameter::Drift);

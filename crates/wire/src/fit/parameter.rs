@@ -72,6 +72,8 @@ parameters! {
     Delay delay "delay" DELAY, "Time by which the measured force follows the measured displacement, s.";
     GainDrift gain_drift "gain_drift" GAIN_DRIFT,
         "Rate at which the gain of the force drifts, relative to the gain at time zero, 1/s.";
+    ShearStrength shear_strength "shear_strength" range::SHEAR_STRENGTH,
+        "Shear strength of the interface τ₀ beside friction, Pa.";
 }
 
 requests! {

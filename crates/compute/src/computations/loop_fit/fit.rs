@@ -16,10 +16,11 @@ use crate::simulation::refused_at;
 ///
 /// # Errors
 /// [`Failure`], which says what the loops lack, that the contact cannot be made, or that the work was ended.
-pub fn fit_loops(request: FitRequest, setup: SharedSetup, stop: &dyn Stop) -> Result<FitReply, Failure> {
+pub fn fit_loops(request: FitRequest, setup: FrictionSetup, stop: &dyn Stop) -> Result<FitReply, Failure> {
     let FitRequest { contact: definition, loops, units, free, known, noise } = request;
     let (known, noise) = (known.unwrap_or_default(), noise.unwrap_or_default());
-    let (preload, has_friction) = (setup.preload, setup.friction > 0.0);
+    let limit = setup.friction.limit;
+    let (preload, has_friction) = (setup.preload, limit.coefficient > 0.0 || limit.shear_strength > 0.0);
     let task = loops::Task {
         contact: contact(setup, "/contact")?,
         records: loops.into_iter().map(record).collect(),
@@ -80,7 +81,11 @@ fn place(error: &Error, free: &[FitParameter], units: FitUnits, has_friction: bo
         Error::StiffnessUnit { record, .. } => of_unit(units.displacement.is_some(), record, "displacement"),
         Error::NoTime { record, .. } => of_record(record, "time"),
         Error::Inseparable { parameter, .. } | Error::NotOfProfile { parameter } => {
-            position(parameter).map_or_else(|| "/free".to_owned(), |index| format!("/free/{index}"))
+            let elsewhere = match parameter {
+                Parameter::ShearStrength => "/contact/shear_strength",
+                _ => "/free",
+            };
+            position(parameter).map_or_else(|| elsewhere.to_owned(), |index| format!("/free/{index}"))
         }
         Error::NoContact { .. } if has_friction => "/contact/preload".to_owned(),
         Error::NoContact { .. } => "/contact/friction".to_owned(),
@@ -157,7 +162,10 @@ fn fitted(definition: ContactDefinition, fit: &LoopFit, names: &[FitParameter]) 
         profile,
         material: if is_modulus_fitted { Material::Effective(moduli) } else { definition.material },
         friction: if has(FitParameter::Friction) { fit.contact.friction() } else { definition.friction },
-        shear_strength: definition.shear_strength,
+        shear_strength: match has(FitParameter::ShearStrength) {
+            true => Some(fit.contact.shear_strength()),
+            false => definition.shear_strength,
+        },
         adhesion: definition.adhesion,
         preload: definition.preload,
         bulk: definition.bulk,
@@ -289,7 +297,10 @@ fn partial_slip(fit: &LoopFit) -> String {
 fn relative(fit: &LoopFit, shifts: &[(Parameter, f64)], least: f64) -> String {
     let share = |(parameter, shift): &(Parameter, f64)| {
         let estimate = fit.estimates.iter().find(|estimate| estimate.parameter == *parameter)?;
-        let is_positive = matches!(parameter, Parameter::Friction | Parameter::GStar | Parameter::MachineCompliance);
+        let is_positive = matches!(
+            parameter,
+            Parameter::Friction | Parameter::GStar | Parameter::MachineCompliance | Parameter::ShearStrength
+        );
         let share = shift / estimate.value;
         (is_positive && share.is_finite() && share.abs() >= least)
             .then(|| format!("{} by {:+.2} %", parameter.name(), 100.0 * share))
