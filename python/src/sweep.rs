@@ -1,12 +1,13 @@
 //! Sweeps, whole or in slices.
 
-use pyo3::exceptions::PyIndexError;
+use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use stickslip_compute::Refusal;
 use stickslip_compute::Stop;
 use stickslip_compute::documents::Parse as _;
-use stickslip_compute::simulation::{self, Anew};
+use stickslip_compute::formats::Format;
+use stickslip_compute::simulation::{self, Anew, SweepResult};
 use stickslip_wire::{Output, SweepRequest};
 
 use super::compute::named;
@@ -46,9 +47,28 @@ impl Sweep {
         let format = named(format)?;
         let result =
             interruptible(py, |stop| self.plan.compute(0..self.plan.points(), threads, stop))?.map_err(refused)?;
-        let blocks = result.blocks(self.plan.checked(), format).collect::<Result<Vec<_>, _>>();
-        let blocks = blocks.map_err(|error| refused(Refusal::internal(error.to_string())))?;
-        Ok(PyBytes::new(py, &blocks.concat()))
+        self.sent(py, result, format)
+    }
+
+    /// What `run` gives, of numbers that were computed elsewhere: the outputs of all points as `f64`, point by point,
+    /// how many points have no answer, and the first of these as JSON text.
+    fn answer<'py>(
+        &self,
+        py: Python<'py>,
+        outputs: &[u8],
+        failed: u64,
+        failures: &str,
+        format: &str,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let format = named(format)?;
+        let (numbers, rest) = outputs.as_chunks();
+        if !rest.is_empty() || numbers.len() != self.plan.numbers(self.plan.points()) {
+            let (points, found) = (self.plan.points(), numbers.len() / self.plan.numbers(1).max(1));
+            return Err(PyValueError::new_err(format!("{found} of {points} points are there")));
+        }
+        let values = numbers.iter().map(|bytes| f64::from_ne_bytes(*bytes)).collect();
+        let failures = serde_json::from_str(failures).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        self.sent(py, SweepResult { values, failed, failures }, format)
     }
 
     /// The names of the columns: the axes or inputs, then the outputs.
@@ -82,5 +102,13 @@ impl Sweep {
         }
         let failures = serde_json::to_string(&result.failures).unwrap_or_default();
         Ok((PyBytes::new(py, &bytes), result.failed, failures))
+    }
+}
+
+impl Sweep {
+    fn sent<'py>(&self, py: Python<'py>, result: SweepResult, format: Format) -> PyResult<Bound<'py, PyBytes>> {
+        let blocks = result.blocks(self.plan.checked(), format).collect::<Result<Vec<_>, _>>();
+        let blocks = blocks.map_err(|error| refused(Refusal::internal(error.to_string())))?;
+        Ok(PyBytes::new(py, &blocks.concat()))
     }
 }

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _native, requests
+from . import _native, results
 from .contact import encoded, guarded
-from .documents import to_document
+from .engine import answer, request_of
 from .optional import needed
 
 if TYPE_CHECKING:
@@ -36,28 +36,54 @@ class SweepDataset:
     failed: int
 
     def to_frame(self) -> pandas.DataFrame:
-        """The whole table, in the order of the points."""
-        fsspec, module = needed("fsspec", "dask"), needed("pandas", "pandas")
-        files, folder = fsspec.core.url_to_fs(self.url)
-        names = sorted(files.glob(posixpath.join(folder, "points-*.parquet")))
-        with_handles = [module.read_parquet(files.open(name)) for name in names]
-        frame: pandas.DataFrame = module.concat(with_handles, ignore_index=True)
+        """A row for each point, in their order: the numbers that change, then the outputs."""
+        frame: pandas.DataFrame = needed("pyarrow", "dask").concat_tables(self._tables()).to_pandas()
         return frame
+
+    def answer(self) -> results.SweepReply | results.UncertaintyReply:
+        """What `stickslip.sweep` returns for the request, to the last bit: of `inputs`, how sure the outputs are."""
+        files, folder = _folder(self.url)
+        with files.open(posixpath.join(folder, "sweep.json")) as file:
+            request = json.load(file)["request"]
+        plan, tables = guarded(_native.Sweep, encoded(request)), self._tables()
+        columns = plan.columns[-len(request["outputs"]) :]
+        rows = [np.column_stack([table[name].to_numpy() for name in columns]) for table in tables]
+        lost = [failure for table in tables for failure in json.loads(table.schema.metadata[b"failures"])]
+        data = guarded(plan.answer, np.concatenate(rows).tobytes(), self.failed, json.dumps(lost), "columns")
+        return answer(results.SweepReply, json.loads(data), None, request)
+
+    def _tables(self) -> list[Any]:
+        """The tables of the chunks, in the order of their points."""
+        needed("pyarrow.parquet", "dask")
+        files, folder = _folder(self.url)
+        tables = []
+        for name in sorted(files.glob(posixpath.join(folder, "points-*.parquet"))):
+            with files.open(name) as file:
+                tables.append(needed("pyarrow", "dask").parquet.read_table(file))
+        return tables
 
 
 def sweep(
-    base: Mapping[str, Any], axes: Any, outputs: Any, *, on: Any, to: str, points_per_task: int | None = None
+    base: Mapping[str, Any],
+    axes: Any = None,
+    outputs: Any = None,
+    *,
+    inputs: Any = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    on: Any,
+    to: str,
+    points_per_task: int | None = None,
 ) -> SweepDataset:
     """Computes a sweep on a cluster into the folder `to`, any URL that fsspec writes to and the workers reach.
 
-    `on` is a client of Dask, or the module `ray`. The rows are those of `stickslip.sweep` to the last bit. A chunk
-    whose worker dies is computed by another. Chunks that exist are skipped, so that an interrupted sweep continues when
-    the function is called again. A folder of another sweep is refused. An exception or an interrupt cancels the tasks.
+    `on` is a client of Dask, or the module `ray`. What describes the sweep is as in `stickslip.sweep`, and so are the
+    rows and the answer, to the last bit. A chunk whose worker dies is computed by another. Chunks that exist are
+    skipped, so that an interrupted sweep continues when the function is called again. A folder of another sweep is
+    refused. An exception or an interrupt cancels the tasks.
     """
-    base = dict(base)
-    if "contact" in base:
-        base["contact"] = requests.definition(base["contact"])
-    request = encoded(to_document({"base": base, "axes": requests.axes(axes), "outputs": requests.outputs(outputs)}))
+    members = {"base": base, "axes": axes, "inputs": inputs, "outputs": outputs, "samples": samples, "seed": seed}
+    request = encoded(request_of("/sweep", members, {}))
     plan = guarded(_native.Sweep, request)
     size = points_per_task or min(SECONDS * plan.chunk, MOST_POINTS)
     _claim(to, request, size)
@@ -90,9 +116,9 @@ def _ray(ray: Any, tasks: list[Task]) -> list[int]:
 
 def compute_chunk(request: bytes, first: int, end: int, to: str) -> int:
     """Computes the points from `first` up to `end` into their file, unless it exists; returns how many failed."""
-    fsspec, pyarrow = needed("fsspec", "dask"), needed("pyarrow", "dask")
+    pyarrow = needed("pyarrow", "dask")
     needed("pyarrow.parquet", "dask")
-    files, folder = fsspec.core.url_to_fs(to)
+    files, folder = _folder(to)
     path = posixpath.join(folder, f"points-{first:012}-{end:012}.parquet")
     if files.exists(path):
         with files.open(path) as file:
@@ -110,9 +136,15 @@ def compute_chunk(request: bytes, first: int, end: int, to: str) -> int:
     return int(failed)
 
 
+def _folder(url: str) -> tuple[Any, str]:
+    """The file system of a URL, and the path in it."""
+    found: tuple[Any, str] = needed("fsspec", "dask").core.url_to_fs(url)
+    return found
+
+
 def _claim(to: str, request: bytes, size: int) -> None:
     """Writes the request into the folder, or compares it with the one that is there."""
-    files, folder = needed("fsspec", "dask").core.url_to_fs(to)
+    files, folder = _folder(to)
     files.makedirs(folder, exist_ok=True)
     path = posixpath.join(folder, "sweep.json")
     own = {"request": json.loads(request), "points_per_task": size}

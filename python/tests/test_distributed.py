@@ -1,4 +1,4 @@
-"""Sweeps on clusters of two processes: the same rows as in one, whatever happens to a worker."""
+"""Sweeps on clusters of two processes: the same rows and answers as in one, whatever happens to a worker."""
 
 from __future__ import annotations
 
@@ -63,38 +63,73 @@ def ray_cluster() -> Iterator[Cluster]:
         ray.shutdown()
 
 
-@pytest.mark.parametrize("start", [dask_cluster, ray_cluster])
-def test_rows_are_those_of_one_process_after_a_worker_was_killed(start: Any, tmp_path: Path) -> None:
+@pytest.fixture(scope="module", params=[dask_cluster, ray_cluster])
+def started(request: pytest.FixtureRequest) -> Iterator[Cluster]:
+    with request.param() as cluster:
+        yield cluster
+
+
+def test_rows_are_those_of_one_process_after_a_worker_was_killed(started: Cluster, tmp_path: Path) -> None:
+    cluster, worker = started
     whole = ss.sweep(BASE, AXES, OUTPUTS).to_frame()
     to = tmp_path.as_uri()
-    with start() as (cluster, worker):
-        files = lambda: list(tmp_path.glob("points-*.parquet"))  # noqa: E731
-        over = threading.Event()
-        killed = []
+    files = lambda: list(tmp_path.glob("points-*.parquet"))  # noqa: E731
+    over = threading.Event()
+    killed = []
 
-        def kill() -> None:
-            while not over.is_set() and not killed:
-                if files() and (victim := worker()):
-                    os.kill(victim, signal.SIGKILL)
-                    killed.append(victim)
-                over.wait(0.005)
+    def kill() -> None:
+        while not over.is_set() and not killed:
+            if files() and (victim := worker()):
+                os.kill(victim, signal.SIGKILL)
+                killed.append(victim)
+            over.wait(0.005)
 
-        killer = threading.Thread(target=kill)
-        killer.start()
-        found = distributed.sweep(BASE, AXES, OUTPUTS, on=cluster, to=to, points_per_task=25)
-        over.set()
-        killer.join()
-        assert killed
-        assert (found.points, found.failed) == (700, 0)
-        frame = found.to_frame()
-        assert list(frame.columns) == list(whole.columns)
-        assert np.array_equal(frame.to_numpy(), whole.to_numpy())
-        # What exists is not computed again, and what was lost is.
-        kept = sorted(files())[1:]
-        times = [one.stat().st_mtime_ns for one in kept]
-        sorted(files())[0].unlink()
-        again = distributed.sweep(BASE, AXES, OUTPUTS, on=cluster, to=to, points_per_task=25)
-        assert np.array_equal(again.to_frame().to_numpy(), whole.to_numpy())
-        assert [one.stat().st_mtime_ns for one in kept] == times
-        with pytest.raises(ValueError):
-            distributed.sweep(BASE, AXES[:1], OUTPUTS, on=cluster, to=to, points_per_task=25)
+    killer = threading.Thread(target=kill)
+    killer.start()
+    found = distributed.sweep(BASE, AXES, OUTPUTS, on=cluster, to=to, points_per_task=25)
+    over.set()
+    killer.join()
+    assert killed
+    assert (found.points, found.failed) == (700, 0)
+    frame = found.to_frame()
+    assert list(frame.columns) == list(whole.columns)
+    assert np.array_equal(frame.to_numpy(), whole.to_numpy())
+    assert found.answer().reply_document() == ss.sweep(BASE, AXES, OUTPUTS).reply_document()
+    # What exists is not computed again, and what was lost is.
+    kept = sorted(files())[1:]
+    times = [one.stat().st_mtime_ns for one in kept]
+    sorted(files())[0].unlink()
+    again = distributed.sweep(BASE, AXES, OUTPUTS, on=cluster, to=to, points_per_task=25)
+    assert np.array_equal(again.to_frame().to_numpy(), whole.to_numpy())
+    assert [one.stat().st_mtime_ns for one in kept] == times
+    with pytest.raises(ValueError):
+        distributed.sweep(BASE, AXES[:1], OUTPUTS, on=cluster, to=to, points_per_task=25)
+
+
+def test_uncertain_inputs_have_the_answer_of_one_process_and_of_a_server(
+    started: Cluster, tmp_path: Path, api: ss.Client
+) -> None:
+    # Far below zero the coefficient of friction is out of its range: some points fail, in several chunks.
+    inputs = {
+        "/contact/friction": {"normal": {"mean": 0.3, "standard_uncertainty": 0.15}},
+        "/contact/preload/normal_force": {"uniform": {"from": 9.0, "to": 11.0}},
+    }
+    described: Any = {"inputs": inputs, "outputs": OUTPUTS, "samples": 300, "seed": 7}
+    here, there = ss.sweep(BASE, **described), api.sweep(BASE, **described)
+    # Short forms of a path, an axis and an output.
+    short: Any = {"axes": {"/contact/friction": [0.1, 0.2]}, "outputs": "/steps/1/force"}
+    moved = {"contact": BASE["contact"], "path": ["0.1 um", "-0.1 um"]}
+    assert here.failed > 5
+    assert here.outputs[0].shares["/contact/friction"].value is not None
+    cluster, _ = started
+    found = distributed.sweep(BASE, **described, on=cluster, to=tmp_path.as_uri(), points_per_task=170)
+    table = distributed.sweep(moved, **short, on=cluster, to=(tmp_path / "short").as_uri())
+    assert table.answer().reply_document() == ss.sweep(moved, **short).reply_document()
+    answer = found.answer()
+    assert isinstance(answer, ss.results.UncertaintyReply)
+    assert (found.points, found.failed) == (here.points, here.failed)
+    assert repr(answer.reply_document()) == repr(here.reply_document()) == repr(there.reply_document())
+    assert len(found.to_frame()) == here.points
+    next(tmp_path.glob("points-*.parquet")).unlink()
+    with pytest.raises(ValueError, match="of 1200 points"):
+        found.answer()

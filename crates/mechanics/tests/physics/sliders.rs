@@ -157,9 +157,54 @@ fn geometric_knots_keep_the_work_of_small_cycles_and_equal_chords_lose_it() {
         assert!((ratio - 1.0).abs() <= 0.101, "{amplitude:e}: {ratio}");
     }
     assert!(equal.work(0.05 * gross_slip) <= 0.0);
-    // Knots by the density of a ball keep 0.9472319 of the work at this amplitude, and equal chords nearly as much.
-    let ten = of(&contact, Wanted::Count(10)).work_ratio(&contact, 0.3 * gross_slip);
-    assert!((ten - 0.947).abs() < 0.01, "{ten}");
+    for count in 1..=20 {
+        assert!(of(&contact, Wanted::Count(count)).work(0.05 * gross_slip) <= 0.0, "{count}");
+    }
+}
+
+/// Sliders with these knots, over the displacement of gross slip, that reach the forces of the contact there.
+fn with_knots(contact: &Contact, knots: &[f64]) -> Sliders {
+    let displacement: Vec<f64> = knots.iter().map(|knot| knot * contact.summary().gross_slip_displacement).collect();
+    let mut exact = contact.virgin();
+    let mut force = |at: f64| exact.apply(&displace(at)).map(|_| exact.force()).unwrap();
+    let points: Vec<_> = std::iter::once((0.0, 0.0)).chain(displacement.iter().map(|at| (*at, force(*at)))).collect();
+    let slope = |pair: &[(f64, f64)]| (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+    let slopes: Vec<f64> = points.windows(2).map(slope).chain([0.0]).collect();
+    let stiffness: Vec<f64> = slopes.windows(2).map(|pair| pair[0] - pair[1]).collect();
+    let slip_force = stiffness.iter().zip(&displacement).map(|(stiffness, knot)| stiffness * knot).collect();
+    Sliders { displacement, stiffness, slip_force, force_error: f64::NAN }
+}
+
+#[test]
+fn known_knots_of_a_ball_keep_the_work_of_their_closed_form() {
+    // D = 4 sum f_i (A - s_i) over 8 int F dU - 4 A F with F = 1 - (1 - u)^(3/2), in 30 digits.
+    let contact = PLAIN.contact();
+    let ratio = |sliders: &Sliders, part: f64| sliders.work_ratio(&contact, part * PLAIN.full_slip());
+    // From a thousandth of gross slip on, each knot by the same factor above the one before.
+    let geometric: Vec<f64> = (0..20).map(|index| 1e-3_f64.powf(1.0 - f64::from(index) / 19.0)).collect();
+    let geometric = with_knots(&contact, &geometric);
+    for (part, expected) in [
+        (0.005, 1.048_254_283_301_161),
+        (0.05, 1.017_788_805_756_238),
+        (0.3, 1.035_705_208_944_679),
+        (0.9, 1.086_578_565_584_614),
+    ] {
+        assert!((ratio(&geometric, part) - expected).abs() < 1e-10, "{part}: {}", ratio(&geometric, part));
+    }
+    // As dense as the root of the curvature: the largest error but for the last chord is 1/(6 N^2) in the limit.
+    let dense: Vec<f64> = (1..=10).map(|index| 1.0 - (1.0 - f64::from(index) / 10.0).powf(4.0 / 3.0)).collect();
+    let dense = with_knots(&contact, &dense);
+    assert!((ratio(&dense, 0.3) - 0.947_231_925_734_791).abs() < 1e-10, "{}", ratio(&dense, 0.3));
+    let chord = largest_of_first_loading(&contact, &dense, 20_000);
+    assert!((chord / 1.666_381_423_015_8e-3 - 1.0).abs() < 1e-6, "{chord:e}");
+    // Chords of one error, by the closed form of that of a ball.
+    let equal = of(&contact, Wanted::Count(10));
+    assert!((equal.force_error / 1.644_588_028_145_8e-3 - 1.0).abs() < 1e-10, "{:e}", equal.force_error);
+    assert!((ratio(&equal, 0.3) - 0.949_867_583_963_827).abs() < 1e-9, "{}", ratio(&equal, 0.3));
+    let again: Vec<f64> = equal.displacement.iter().map(|knot| knot / PLAIN.full_slip()).collect();
+    for (one, other) in equal.slip_force.iter().zip(with_knots(&contact, &again).slip_force) {
+        assert!((one / other - 1.0).abs() < 1e-10, "{one:e} {other:e}");
+    }
 }
 
 #[test]
