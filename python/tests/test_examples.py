@@ -48,6 +48,16 @@ def test_the_loop_of_a_worn_ball_is_predicted_from_that_of_a_ball() -> None:
     assert table["relative_rms"].iloc[0] == pytest.approx(0.01 / 7.0, rel=0.2)
 
 
+def test_curves_of_closed_forms_are_met_up_to_their_noise() -> None:
+    # One percent of the largest value or of the range, of forty or sixty points.
+    sheared, stiff, joint = (run(f"compare_with_{name}") for name in ("area", "stiffness", "joint"))
+    assert sheared["strength"].iloc[0] == pytest.approx(3e5, rel=0.02)
+    assert stiff["ratio"].iloc[0] == pytest.approx(1.4 / 1.7, rel=5e-3)
+    assert stiff["expected"].iloc[0] == pytest.approx(1.4 / 1.7, rel=1e-12)
+    rests = [sheared["relative_rms"], stiff.filter(like="rms").loc[0], joint["relative_rms"]]
+    assert pandas.concat(rests).between(0.007, 0.013).all()
+
+
 def test_a_larger_motion_is_nearer_to_a_crack() -> None:
     table = run("will_it_crack")
     assert table["margin"].is_monotonic_decreasing
