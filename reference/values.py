@@ -21,7 +21,7 @@ from found.laws import adhesion, relaxation, twist
 from found.lines import line_contact, pad
 from found.normal import normal_contact
 from found.others import conductance, rolling, shear_strength, sliders, wear_limit
-from found.plane import circular_motion
+from found.plane import circular_motion, elliptic_motion
 from found.tangential import falling_amplitude, first_loading, oblique_paths, paper_figures, random_turns
 
 FOLDER = Path(__file__).parent
@@ -34,6 +34,7 @@ PROBLEMS = (
     paper_figures,
     oblique_impact,
     circular_motion,
+    elliptic_motion,
     loops,
     harmonics,
     line_contact,
@@ -50,15 +51,19 @@ PROBLEMS = (
 )
 
 
-def same(found, stored):
+#: By how much outputs may differ on other machines, over their scale; LAPACK's last bits reach far in this one.
+LAST_BITS = {"circular-motion": 2e-10}
+
+
+def same(found, stored, room=1e-13):
     """Equal but for the last bits of outputs, by which libraries of other machines differ."""
     if isinstance(found, dict) and "scale" in found and found["unit"] == stored["unit"]:
         pairs = zip([*found["values"], found["scale"]], [*stored["values"], stored["scale"]], strict=True)
-        return all(abs(one - other) <= 1e-13 * stored["scale"] for one, other in pairs)
+        return all(abs(one - other) <= room * stored["scale"] for one, other in pairs)
     if isinstance(found, dict):
-        return found.keys() == stored.keys() and all(same(found[name], stored[name]) for name in found)
+        return found.keys() == stored.keys() and all(same(found[name], stored[name], room) for name in found)
     if isinstance(found, list):
-        return len(found) == len(stored) and all(same(*pair) for pair in zip(found, stored))
+        return len(found) == len(stored) and all(same(*pair, room) for pair in zip(found, stored))
     return found == stored
 
 
@@ -70,7 +75,8 @@ def main():
         document = make()
         path = FOLDER / f"{document['id']}.json"
         if "--check" in sys.argv[1:]:
-            assert same(document, json.loads(path.read_text())), f"{path.name} is not what this program computes"
+            room = LAST_BITS.get(document["id"], 1e-13)
+            assert same(document, json.loads(path.read_text()), room), f"{path.name} is not what this program computes"
         else:
             path.write_text(json.dumps(document, indent=1, ensure_ascii=False) + "\n")
         print(document["id"])

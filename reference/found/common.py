@@ -3,7 +3,7 @@
 from mpmath import mp, mpf
 
 mp.dps = 40
-VERSION = "1.1.0"
+VERSION = "2.0.0"
 
 
 def near(first, second, digits, what):

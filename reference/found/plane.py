@@ -1,4 +1,6 @@
-"""A ball that is moved in a circle: the steady turn, seen from axes that turn with it.
+"""Motion in the plane: a ball on a circle and a punch on an ellipse.
+
+The steady turn of a ball is seen from axes that turn with it.
 
 In units of the contact radius, G* and the displacement of gross slip. From turning axes the steady turn is at rest: the
 ball is at U on the real axis, tractions tau and displacements u of the surface are complex and depend on r alone. Inside
@@ -7,53 +9,73 @@ displacement of the method of dimensionality reduction, U inside c,
 
     tau(r) = -(1/pi) int_max(r, c)^1 v'/sqrt(t^2 - r^2) dt,   u(r) = U + (2/pi) int_c^r v' arccos(t/r) dt.
 
-Beside c the tractions turn as (r - c)^e with e = 0.08, and v' grows like (t - c)^(e - 1/2): panels of polynomials each a
-few times as wide as the one before, from (t - c) of 1e-24 on, follow that.
+Beside c the tractions turn as (r - c)^e with e = 0.08, and v' grows like (t - c)^(e - 1/2): panels of polynomials in
+log(t - c), each eight times as wide as the one before, from (t - c) of 1e-27 on, follow that.
 """
 
 import numpy as np
+from mpmath import cos, mp, mpf, pi, sin
 from numpy.polynomial.legendre import leggauss, legvander
 
 from found.common import out, problem
 from found.tangential import BALL, BALL_TEXT, Ball
 
-GROWTH, ORDER = 8.0, 14
+GROWTH, ORDER = 8.0, 12
+#: How much more the edge counts, which is not to err by what a panel beside c cannot follow.
+EDGE = 1e5
+#: Gauss's points and weights between 0 and 1.
+POINTS = (leggauss(2 * ORDER + 8)[0] + 1) / 2, leggauss(2 * ORDER + 8)[1] / 2
 
 
 class Annulus:
     """Panels between c and 1, in distances from c, and what v' at their nodes gives there."""
 
     def __init__(self, c, depth):
-        points, weights = (leggauss(2 * ORDER + 8)[0] + 1) / 2, leggauss(2 * ORDER + 8)[1] / 2
         local = (leggauss(ORDER)[0] + 1) / 2
-        to_nodes = np.linalg.inv(legvander(2 * local - 1, ORDER - 1))
-        ends = np.concatenate([[0.0], GROWTH ** -np.arange(depth, 0, -1.0), [0.3, 0.6, 1.0]]) * (1 - c)
-        self.c, self.x = c, np.concatenate([low + (high - low) * local for low, high in zip(ends, ends[1:])])
-        count, x = len(self.x), self.x[:, None]
-        self.tau, self.u, self.sum = np.zeros((count, count)), np.zeros((count, count)), np.zeros(count)
-        for panel, (low, high) in enumerate(zip(ends, ends[1:])):
-            part = slice(panel * ORDER, (panel + 1) * ORDER)
-
-            def values(t, low=low, high=high):
-                basis = legvander(np.clip(2 * (t - low) / (high - low) - 1, -1, 1), ORDER - 1)
-                return (basis.reshape(-1, ORDER) @ to_nodes).reshape(*t.shape, ORDER)
-
+        self.to_nodes = np.linalg.inv(legvander(2 * local - 1, ORDER - 1))
+        self.c, self.ends = c, np.concatenate([[0.0], GROWTH ** -np.arange(depth, 0, -1.0), [0.3, 0.6, 1.0]]) * (1 - c)
+        first, *pairs = zip(self.ends, self.ends[1:])
+        self.x = np.concatenate([first[1] * local, *(low * (high / low) ** local for low, high in pairs)])
+        self.tau, self.u = self.stresses(self.x), np.zeros((len(self.x), len(self.x)))
+        self.sum = np.zeros(len(self.x))
+        points, weights = POINTS
+        x = self.x[:, None]
+        for part, low, high, values in self.panels():
             self.sum[part] = (high - low) * (weights @ values(low + (high - low) * points))
-            # t = r + s^2 and t = r - s^2 take the roots away.
-            from_s, to_s = np.sqrt(np.maximum(low - x, 0)), np.sqrt(np.maximum(high - x, 0))
-            s = from_s + (to_s - from_s) * points
-            kernel = (to_s - from_s) * weights * 2 / np.sqrt(2 * (x + c) + s * s)
-            self.tau[:, part] = -np.einsum("iq,iqk->ik", kernel, values(x + s * s)) / np.pi
+            # t = r - s^2 takes the root away.
             from_s, to_s = np.sqrt(np.maximum(x - high, 0)), np.sqrt(np.maximum(x - low, 0))
             s = from_s + (to_s - from_s) * points
             kernel = (to_s - from_s) * weights * 4 * s * np.arcsin(np.minimum(s / np.sqrt(2 * (x + c)), 1))
             self.u[:, part] = 2 / np.pi * np.einsum("iq,iqk->ik", kernel, values(x - s * s))
         self.limit = 2 / np.pi * np.sqrt((1 - c - self.x) * (1 + c + self.x))
 
+    def panels(self):
+        """The nodes of each panel, its ends, and what the values at its nodes give between them."""
+        for panel, (low, high) in enumerate(zip(self.ends, self.ends[1:])):
+
+            def values(t, low=low, high=high):
+                share = np.log(np.maximum(t, low) / low) / np.log(high / low) if low else t / high
+                basis = legvander(np.clip(2 * share - 1, -1, 1), ORDER - 1)
+                return (basis.reshape(-1, ORDER) @ self.to_nodes).reshape(*t.shape, ORDER)
+
+            yield slice(panel * ORDER, (panel + 1) * ORDER), low, high, values
+
+    def stresses(self, at):
+        """What v' at the nodes gives of tau at these distances from c, which are negative within."""
+        points, weights = POINTS
+        found, x = np.zeros((len(at), len(self.x))), at[:, None]
+        for part, low, high, values in self.panels():
+            # t = r + s^2 takes the root away.
+            from_s, to_s = np.sqrt(np.maximum(low - x, 0)), np.sqrt(np.maximum(high - x, 0))
+            s = from_s + (to_s - from_s) * points
+            kernel = (to_s - from_s) * weights * 2 / np.sqrt(2 * (x + self.c) + s * s)
+            found[:, part] = -np.einsum("iq,iqk->ik", kernel, values(x + s * s)) / np.pi
+        return found
+
     def errors(self, rise, move):
         """How far |tau| is from mu p, tau from the direction of slip, and v from 0 at the edge; with the slopes."""
         tau, slip = self.tau @ rise, -(self.u @ rise)
-        edge = move + self.sum @ rise
+        edge = EDGE * (move + self.sum @ rise)
         scale = 1 / (self.limit * self.x)
         found = np.concatenate(
             [np.abs(tau) ** 2 / self.limit**2 - 1, (slip * tau.conj()).real * scale, [edge.real, edge.imag]]
@@ -64,8 +86,8 @@ class Annulus:
                 (of_slip[:, None] * self.tau - of_tau[:, None] * self.u) * scale[:, None]
                 for of_slip, of_tau in ((slip.real, tau.real), (slip.imag, tau.imag))
             ],
-            [self.sum[None], 0 * self.sum[None]],
-            [0 * self.sum[None], self.sum[None]],
+            [EDGE * self.sum[None], 0 * self.sum[None]],
+            [0 * self.sum[None], EDGE * self.sum[None]],
         ]
         return found, np.block(rows)
 
@@ -95,14 +117,14 @@ def steady(move, depth, rise, c):
 
 
 def turn(move):
-    """Stick radius, and the force over mu F_N, whose imaginary part is the work: extrapolated over the depth."""
+    """The force over mu F_N, whose imaginary part is the work, with panels ever nearer to c."""
 
     def begin(c, x):
         return -2 * (c + x) * move / (1 - c * c) * np.exp(-0.6j * np.minimum(1, 2 * x / (1 - c)))
 
-    rows, c = [], np.sqrt(1 - move) * 0.97
-    for depth in (3, 8, 14, 20, 26):
-        ring, rise = steady(move, depth, begin, c)
+    force, c = 0.0, np.sqrt(1 - move) * 0.97
+    for depth in (3, 8, 14, 20, 26, 30):
+        before, (ring, rise) = force, steady(move, depth, begin, c)
         c, x = ring.c, ring.x
 
         def begin(c, new, x=x, rise=rise):
@@ -112,59 +134,61 @@ def turn(move):
             return np.where(new < x[6], near, far)
 
         force = 1.5 * (move + ((1 - c - x) * ring.sum) @ rise)
-        rows.append([c, force.real, force.imag])
-    first, second, third = np.array(rows[-3:])
-    found = third + (third - second) ** 2 / ((second - first) - (third - second))
-    return found, np.abs(found - third).max(), (c + ring.x, np.angle(ring.tau @ rise))
-
-
-def by_rings(move, c, angles, count):
-    """The same by rings of constant traction, by Newton's method from these angles on."""
-    r = np.sqrt(np.arange(count + 1) / count)
-    points, weights = leggauss(12)
-    points = (points + 1) / 2
-    matrix = np.zeros((count, count))
-    for low, high in zip(r, r[1:]):
-        # The integrand has roots at both ends.
-        t = low + (high - low) * np.sin(np.pi / 2 * points) ** 2
-        roots = np.sqrt(np.maximum(r[:, None] ** 2 - t**2, 0))
-        phi = 2 * np.diff(roots, axis=0)
-        matrix += 2 * (phi * ((high - low) * np.pi / 2 * np.sin(np.pi * points) * weights / 2)) @ phi.T
-    matrix /= (np.pi * np.diff(r**2))[:, None]
-    carried = -4 / 3 * np.diff((1 - r**2) ** 1.5)
-    limit = carried / (np.pi * np.diff(r**2))
-    sticks = r[1:] < c
-    angle = np.interp(np.sqrt((r[1:] ** 2 + r[:-1] ** 2) / 2), *angles)
-    tau = limit * np.exp(1j * angle)
-    for _ in range(60):
-        slip = move - matrix @ tau
-        # Unknown: both parts of tau where it sticks, its angle where it slips.
-        turned = 1j * tau
-        one, other = np.flatnonzero(sticks), np.flatnonzero(~sticks)
-        inner = matrix[np.ix_(one, one)]
-        cross = turned[other]
-        rows = [
-            [inner, 0 * inner, matrix[np.ix_(one, other)] * cross.real],
-            [0 * inner, inner, matrix[np.ix_(one, other)] * cross.imag],
-        ]
-        back = tau.conj()[other, None]
-        fixed = matrix[np.ix_(other, one)]
-        moving = matrix[np.ix_(other, other)] * cross
-        rows.append(
-            [
-                -(back * fixed).real,
-                -(back * 1j * fixed).real,
-                -(back * moving).real + np.diag((slip[other] * cross.conj()).real),
-            ]
-        )
-        wanted = np.concatenate([slip[one].real, slip[one].imag, -(slip * tau.conj())[other].real])
-        step = np.linalg.solve(np.block(rows), wanted)
-        tau[one] += step[: len(one)] + 1j * step[len(one) : 2 * len(one)]
-        tau[other] *= np.exp(1j * np.clip(step[2 * len(one) :], -0.3, 0.3))
-        if np.abs(step).max() < 1e-11:
-            break
-    force = (tau * np.pi * np.diff(r**2)).sum() / (4 / 3)
+    worst, rings = as_rings(ring, rise, move)
+    assert abs(force - before) < 1e-10, (force, before)
+    assert worst < 1e-9, worst
+    assert abs(rings - force) < 1e-10, (rings, force)
     return force
+
+
+def mean(one, other):
+    """The arithmetic-geometric mean of Gauss."""
+    for _ in range(60):
+        one, other = (one + other) / 2, np.sqrt(one * other)
+    return one
+
+
+def halves(ends):
+    """Places between singular points, as an end and the distance from it, with weights: the double exponential rule."""
+    t = np.arange(-4.59, 0.0, 0.02)
+    share = 1 / (1 + np.exp(-np.pi * np.sinh(t)))
+    weight = 0.02 * np.pi * np.cosh(t) * share * (1 - share)
+    for low, high in zip(ends, ends[1:]):
+        for end, sign in ((low, 1), (high, -1)):
+            yield end, sign * (high - low) * share, (high - low) * weight
+
+
+def as_rings(ring, rise, move):
+    """How far tractions are from the law, by the displacements of the rings that they are, and their force.
+
+    A ring of the radius s and the width ds has the displacement 2 tau s ds/M(r + s, |r - s|), M the mean of Gauss: an
+    elliptic integral, without the method of dimensionality reduction.
+    """
+    c, worst = ring.c, 0.0
+
+    def tau(end, off):
+        return ring.stresses(off if end == 0.0 else end + off) @ rise
+
+    force = sum(
+        (weight * (c + end + off) * tau(end, off)).sum() for end, off, weight in halves([-c, 0.0, 1 - c])
+    )
+    places = np.array([-1.0, -0.7, -0.3, -0.1, -1e-2, -1e-4]) * c
+    places = [*places, *np.array([1e-5, 1e-3, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99]) * (1 - c)]
+    for x in places:
+        displacement = 0.0
+        for end, off, weight in halves(sorted({-c, 0.0, x, 1 - c})):
+            s, apart = c + end + off, np.abs(off) if end == x else np.abs(end + off - x)
+            displacement += (weight * 2 * tau(end, off) * s / mean(c + x + s, apart)).sum()
+        slip, limit = move - displacement, 2 / np.pi * np.sqrt((1 - c - x) * (1 + c + x))
+        shear = complex(tau(x, np.zeros(1))[0]) if x else 0
+        if x < 0:
+            worst = max(worst, abs(slip))
+            assert abs(shear) < limit
+        else:
+            worst = max(worst, abs(abs(shear) / limit - 1), abs((slip * shear.conjugate()).real) / limit)
+            # The axes turn with the clock: the rate of the slip, -i times it, is along the shear stress.
+            assert (1j * slip * shear.conjugate()).real < 0
+    return worst, 2 * np.pi * force / (4 / 3)
 
 
 def circular_motion():
@@ -174,13 +198,10 @@ def circular_motion():
     moves = [float(f"{unit * share:.9e}") for share in (0.6, 0.3)]
     along, across, work = [], [], []
     for move in moves:
-        found, last, angles = turn(move / unit)
-        assert last < 1e-10, last
-        force = by_rings(move / unit, found[0], angles, 200)
-        assert abs(force - complex(found[1], found[2])) < 2e-4, (force, found)
+        force = turn(move / unit)
         # The axes turn the other way round.
-        along.append(found[1] * limit)
-        across.append(-found[2] * limit)
+        along.append(force.real * limit)
+        across.append(-force.imag * limit)
         work.append(2 * np.pi * move * across[-1])
     outputs = {
         "force_x": out("N", *along, scale=limit),
@@ -195,14 +216,95 @@ def circular_motion():
         " in x to each of `radii` and then round circles x = U cos t, y = U sin t, until turns no longer differ. Asked:"
         " the force at the end of a turn, along x and y, and the friction work of a turn.",
         "Seen from axes that turn with the ball the steady turn is at rest: stress and displacement of the surface over"
-        " r, complex, by polynomials on panels that are graded to the stick radius from 1e-24 on, the equations solved"
-        " by the method of Gauss and Newton in doubles: 10 digits (other orders and depths differ by 1e-10).",
-        "200 rings of constant stress, in the same axes: 2e-4 of mu F_N.",
+        " r, complex, by polynomials on panels that are graded to the stick radius from 1e-27 on, the equations solved"
+        " by the method of Gauss and Newton in doubles: 10 digits.",
+        "The displacements of the surface under these stresses by the kernel of a ring, an elliptic integral, at 15"
+        " places: inside c they are U, outside the rate of the slip is along the stress, to 1e-9 of gross slip; the"
+        " integral of the stress is the force to 1e-10 of mu F_N.",
         ["Jaeger 1998", "Ciavarella 2013, Journal of Strain Analysis 49, 27"],
         [{"name": "ball", "inputs": {**BALL, "normal_force": 10.0, "radii": moves}, "outputs": outputs}],
         {
             "1e-2": "each ring slips in a direction of its own; springs that slip each for itself lose 24 % less",
             "1e-4": "some tens of rings, and steps that are extrapolated",
             "1e-8": "the edge of the stick zone is resolved, beside which the stress turns as (r - c)^0.08",
+        },
+    )
+
+
+def dragged(a, b, count):
+    """Directions of the force after a quarter and half a steady turn, and how far the punch slides: `count` chords.
+
+    On a chord the tangent of half the angle between force and motion falls by exp(-length): a tractrix.
+    """
+    places = np.exp(2j * np.pi * np.arange(count + 1) / count)
+    places = a * places.real + 1j * b * places.imag
+    angle = 0.0
+    for _ in range(4):
+        found, slid = [], 0.0
+        for chord in np.diff(places):
+            half = np.tan((angle - np.angle(chord)) / 2)
+            before, after = 2 * np.arctan(half), 2 * np.arctan(half * np.exp(-abs(chord)))
+            slid += np.log(np.sin(before) / np.sin(after))
+            angle = np.angle(chord) + after
+            found.append(np.exp(1j * angle))
+    return np.array([found[count // 4 - 1], found[count // 2 - 1], slid])
+
+
+def by_chords(a, b):
+    """The same, extrapolated: chords err by even powers of their length."""
+    table = [dragged(a, b, 256 * 2**power) for power in range(5)]
+    for order in range(1, 5):
+        table = [fine + (fine - coarse) / (4**order - 1) for coarse, fine in zip(table, table[1:])]
+    return table[0]
+
+
+def elliptic_motion():
+    """The document: whole ellipses under a punch, which slides as a whole and is a body on a spring."""
+    inputs = {**BALL, "normal_force": 10.0, "radii": [4e-7, 2.5e-7]}
+    inputs["profile"] = {"type": "flat_punch", "radius": 1e-4}
+    del inputs["radius"]
+    limit = mpf(inputs["friction"]) * mpf(inputs["normal_force"])
+    unit = limit / (2 * mpf(inputs["g_star"]) * mpf(inputs["profile"]["radius"]))
+    a, b = (mpf(radius) / unit for radius in inputs["radii"])
+    quarter, half, chords = by_chords(float(a), float(b))
+    with mp.workdps(25):
+        # Over half a turn, from the opposite of where it ends: what the motion has across the force turns it.
+        angle = mp.odefun(
+            lambda t, y: [a * sin(t) * sin(y[0]) + b * cos(t) * cos(y[0])], 0, [mpf(float(np.angle(-half)))]
+        )
+        rates = []
+        for step in range(64):
+            t = pi * step / 64
+            rates.append(b * cos(t) * sin(angle(t)[0]) - a * sin(t) * cos(angle(t)[0]))
+        # It slides all the way, and the trapezoidal rule has all digits of what is periodic.
+        assert min(rates) > 0
+        slid, forces = 2 * pi * mp.fsum(rates) / 64, [mp.expj(angle(t)[0]) for t in (pi / 2, pi)]
+    for one, other in zip([*forces, slid], [quarter, half, chords.real]):
+        assert abs(complex(one) - other) < 1e-12, (one, other)
+    outputs = {
+        "force_x": out("N", *(limit * force.real for force in forces), scale=limit),
+        "force_y": out("N", *(limit * force.imag for force in forces), scale=limit),
+        "turn_work": out("J", limit * unit * slid),
+    }
+    return problem(
+        "elliptic-motion",
+        "A flat punch that is moved round an ellipse",
+        BALL_TEXT.replace("A ball of radius R (`radius`)", "A flat round punch (`profile`)").replace(
+            "slip is along x", "the shear stress of a place that slips is along its slip"
+        )
+        + "Displacements along x act along x alone (Poisson's ratios as if zero). Under constant F_N the punch is moved"
+        " round the ellipse x = U_x cos t, y = U_y sin t with U_x and U_y of `radii`, until turns no longer differ."
+        " Asked: the force a quarter and half a turn after x = U_x, along x and y, and the friction work of a turn.",
+        "Pressure and shear stress of a punch have one form, so that all of it slips at once: it is a body on a spring"
+        " of the stiffness 2 G* times its radius, dragged by the force mu F_N (a tractrix). Its differential"
+        " equation by Taylor's series in 25 digits, from a value of 13 digits on; the work is mu F_N times the length"
+        " that it slides.",
+        "The closed tractrix of straight chords, 256 to 4096 of them, extrapolated four times: to 1e-12.",
+        ["Johnson 1985, 10.1017/CBO9781139171731"],
+        [{"name": "punch", "inputs": inputs, "outputs": outputs}],
+        {
+            "1e-2": "a spring with a friction cap, drawn back along its force, in some hundred steps for each turn",
+            "1e-4": "the same in some ten thousand steps, or steps of second order",
+            "1e-8": "steps that are extrapolated, or of high order",
         },
     )
