@@ -2,18 +2,15 @@
 //!
 //! Slider i has the stiffness k_i and slips at the displacement s_i of its spring. Their first loading curve is the
 //! polygon through the points of the exact one at the knots s_i, and Masing's rules hold for both; so the errors of the
-//! forces are those of chords. The first loading curve is F = 2 G* m int_(d-W)^d X dy with W = U/m, and its slope
-//! dF/dU = 2 G* X(d - W) falls: the chord from W_a to W_b is farthest from it where X is the slope of the chord.
+//! forces are those of chords. A chord is farthest from the curve where the slope of the curve is its own.
 //!
 //! Against knots whose chords all have the same error stand geometric ones, r^i s_0, which keep the work of small
 //! cycles: D(A) = 4 sum f_i (A - s_i) over the sliders that slip, with f_i = k_i s_i.
 
 use crate::contact::Contact;
-use crate::contact::normal::load;
+use crate::contact::first_loading::FirstLoading;
 use crate::cycle::SteadyCycle;
-use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots;
-use crate::profile::Ring;
 use crate::range::error::Error;
 use crate::range::{self, Quantity, Range};
 
@@ -60,33 +57,17 @@ pub struct Sliders {
     pub force_error: f64,
 }
 
-/// The first loading curve of a contact over W, m, in units of 2 G* m: its value m^2, its slope m.
-struct FirstLoading<'a> {
-    contact: &'a Contact,
-    depth: DoubleDouble,
-}
-
 impl FirstLoading<'_> {
-    fn ring(&self, from: f64, to: f64) -> Ring {
-        let point = |at: f64| self.contact.indenter.point(self.depth - DoubleDouble::from(at));
-        Ring::between(point(to), point(from))
-    }
-
-    fn rise(&self, from: f64, to: f64) -> f64 {
-        load(&self.contact.indenter, &self.ring(from, to))
-    }
-
-    /// The largest distance of the curve from the chord between two places.
+    /// The largest distance, N, of the curve from the chord between two displacements, m.
     fn chord_error(&self, from: f64, to: f64) -> f64 {
         let slope = self.rise(from, to) / (to - from);
-        let level = DoubleDouble::from(self.contact.indenter.level(slope));
-        let at = (self.depth - level).value().clamp(from, to);
+        let at = self.displacement_of_stiffness(slope).clamp(from, to);
         (self.rise(from, at) - slope * (at - from)).max(0.0)
     }
 
     /// Where the chord from a place has this error, or the end.
     fn next(&self, from: f64, error: f64, guess: f64) -> f64 {
-        let end = self.depth.value();
+        let end = self.gross_slip();
         let over = |to: f64| if to > from { self.chord_error(from, to).sqrt() - error.sqrt() } else { -error.sqrt() };
         let mut low = (from, -error.sqrt());
         let mut high = ((from + guess).min(end), 0.0);
@@ -104,7 +85,7 @@ impl FirstLoading<'_> {
 
     /// The knots of chords with this error, as many as `most` and one more at the end of the curve.
     fn march(&self, error: f64, most: usize) -> Vec<f64> {
-        let end = self.depth.value();
+        let end = self.gross_slip();
         let (mut knots, mut from, mut guess) = (Vec::new(), 0.0, end / most.max(1) as f64);
         while from < end && knots.len() < most {
             let to = self.next(from, error, guess);
@@ -117,7 +98,7 @@ impl FirstLoading<'_> {
 
     /// The knots of `count` chords with one error, the last of them at the end of the curve.
     fn equal(&self, count: usize, keep_going: &dyn Fn() -> bool) -> Result<Vec<f64>, Error> {
-        let end = self.depth.value();
+        let end = self.gross_slip();
         let whole = self.chord_error(0.0, end);
         if count <= 1 || whole <= STRAIGHT * self.rise(0.0, end) {
             return Ok(vec![end]);
@@ -176,7 +157,7 @@ impl Sliders {
         if contact.profile().line().is_some_and(|line| line.bulk().is_some()) {
             return Err(Error::LineContact("sliders with a bulk stress"));
         }
-        let curve = FirstLoading { contact, depth: contact.history.edge().level };
+        let curve = FirstLoading(contact);
         match wanted {
             Wanted::Count(count) => {
                 COUNT.check(count as f64)?;
@@ -184,7 +165,7 @@ impl Sliders {
             }
             Wanted::ForceError(error) => {
                 let most = COUNT.max as usize;
-                let whole = curve.rise(0.0, curve.depth.value());
+                let whole = curve.rise(0.0, curve.gross_slip());
                 let count = curve.march(ERROR.check(error)? * whole, most + 1).len();
                 if count > most {
                     let least = curve.sliders(&curve.equal(most, keep_going)?).force_error;
@@ -221,27 +202,24 @@ impl Sliders {
 
 impl FirstLoading<'_> {
     fn sliders(&self, knots: &[f64]) -> Sliders {
-        let (scale, unit) = (self.contact.scale(), 2.0 * self.contact.elasticity.g_star());
         let starts = || std::iter::once(0.0).chain(knots.iter().copied());
         let slopes: Vec<f64> = starts().zip(knots).map(|(from, to)| self.rise(from, *to) / (to - from)).collect();
         let below = slopes.iter().skip(1).copied().chain([0.0]);
-        let stiffness: Vec<f64> = slopes.iter().zip(below).map(|(slope, next)| unit * (slope - next)).collect();
-        let displacement: Vec<f64> = knots.iter().map(|knot| scale * knot).collect();
-        let slip_force = stiffness.iter().zip(&displacement).map(|(stiffness, knot)| stiffness * knot).collect();
+        let stiffness: Vec<f64> = slopes.iter().zip(below).map(|(slope, next)| slope - next).collect();
+        let slip_force = stiffness.iter().zip(knots).map(|(stiffness, knot)| stiffness * knot).collect();
         let largest = starts().zip(knots).map(|(from, to)| self.chord_error(from, *to)).fold(0.0, f64::max);
-        let whole = self.rise(0.0, self.depth.value());
-        Sliders { displacement, stiffness, slip_force, force_error: largest / whole }
+        let whole = self.rise(0.0, self.gross_slip());
+        Sliders { displacement: knots.to_vec(), stiffness, slip_force, force_error: largest / whole }
     }
 
     /// The fewest sliders with geometric knots that keep the work.
     fn geometric(&self, error: f64, smallest: f64, keep_going: &dyn Fn() -> bool) -> Result<Sliders, Error> {
-        let (most, end) = (COUNT.max as usize, self.depth.value());
-        let first = smallest / self.contact.scale();
+        let (most, end) = (COUNT.max as usize, self.gross_slip());
         let of = |count: usize, below: usize| {
             if !keep_going() {
                 return Err(Error::Interrupted);
             }
-            let ratio = (end / first).powf(1.0 / count.saturating_sub(1 + below).max(1) as f64);
+            let ratio = (end / smallest).powf(1.0 / count.saturating_sub(1 + below).max(1) as f64);
             let knots: Vec<f64> = (1..count).rev().map(|back| end * ratio.powi(-(back as i32))).chain([end]).collect();
             let sliders = self.sliders(&knots);
             Ok((self.work_deviation(&sliders, smallest), sliders))
@@ -291,7 +269,7 @@ impl FirstLoading<'_> {
                 for step in usize::from(from > smallest)..=AMPLITUDES_BETWEEN {
                     let amplitude = from + (knot - from) * step as f64 / AMPLITUDES_BETWEEN as f64;
                     let work = 4.0 * (force * amplitude - moment);
-                    let exact = SteadyCycle::of(self.contact, amplitude).dissipated_energy();
+                    let exact = SteadyCycle::of(self.0, amplitude).dissipated_energy();
                     let lost = (work - exact).abs();
                     // Where nothing slips, as on a flat, both are rounding.
                     largest = largest.max(if lost > ROUNDING * whole * amplitude { lost / exact } else { 0.0 });
@@ -318,12 +296,7 @@ impl Sliders {
 /// density along its diagonal. What a flat contributes slips at the last knot alone and is no density.
 #[must_use]
 pub fn density(contact: &Contact, knots: &[f64]) -> Vec<f64> {
-    let depth = contact.history.edge().level;
-    let stiffness = |displacement: f64| {
-        let level = depth - contact.scaled(DoubleDouble::from(displacement));
-        let level = if level.value() < 0.0 { DoubleDouble::ZERO } else { level };
-        2.0 * contact.elasticity.g_star() * contact.indenter.point(level).radius
-    };
-    let between = |pair: &[f64]| (stiffness(pair[0]) - stiffness(pair[1])) / (pair[1] - pair[0]);
+    let curve = FirstLoading(contact);
+    let between = |pair: &[f64]| (curve.stiffness(pair[0]) - curve.stiffness(pair[1])) / (pair[1] - pair[0]);
     knots.windows(2).map(between).collect()
 }

@@ -3,6 +3,7 @@
 
 pub(crate) mod accuracy;
 mod adhesion;
+pub(crate) mod first_loading;
 mod fixed;
 mod law;
 pub(crate) mod normal;

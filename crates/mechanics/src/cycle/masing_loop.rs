@@ -5,11 +5,9 @@
 //! this loop interrupted (Madelung); a branch from the only turning point ends at its mirror image, on the first
 //! loading curve.
 
-use super::slipped;
 use crate::contact::Contact;
-use crate::contact::normal::load;
+use crate::contact::first_loading::FirstLoading;
 use crate::numerics::chebyshev::{self, Points, TWENTY_FOUR};
-use crate::numerics::double_double::DoubleDouble;
 
 /// Halvings of a piece of the first loading curve, and points in all: beyond, the curve is evaluated itself.
 const HALVINGS: usize = 30;
@@ -17,13 +15,11 @@ const MOST_POINTS: usize = 12_000;
 /// A series whose last terms are below this part of the largest has all its digits.
 const RESOLVED: f64 = 2e-15;
 
-/// The first loading curve of a contact at its present load, whatever its history.
-///
-/// A motion asks for it a million times: F/U is held as Chebyshev series over pieces that are halved until each is
-/// resolved, which keeps the digits of small displacements too.
+/// The first loading curve of a contact for motions, which ask for it a million times: F/U is held as Chebyshev series
+/// over pieces that are halved until each is resolved, which keeps the digits of small displacements too.
 #[derive(Clone, Debug)]
-pub(super) struct FirstLoading<'a> {
-    contact: &'a Contact,
+pub(super) struct LoadingSeries<'a> {
+    curve: FirstLoading<'a>,
     /// Displacement of gross slip, m.
     gross_slip: f64,
     /// Force of gross slip mu F_N, N.
@@ -41,26 +37,26 @@ struct Piece {
     series: Option<Vec<f64>>,
 }
 
-impl<'a> FirstLoading<'a> {
-    pub(super) fn new(contact: &'a Contact) -> FirstLoading<'a> {
-        let gross_slip = contact.unscaled(contact.history.edge().level).value().max(0.0);
-        let limit = contact.friction * contact.normal_force;
-        let mut curve = FirstLoading { contact, gross_slip, limit, pieces: Vec::new() };
+impl<'a> LoadingSeries<'a> {
+    pub(super) fn new(contact: &'a Contact) -> LoadingSeries<'a> {
+        let curve = FirstLoading(contact);
+        let (gross_slip, limit) = (curve.gross_slip(), contact.friction * contact.normal_force);
+        let mut series = LoadingSeries { curve, gross_slip, limit, pieces: Vec::new() };
         let (mut open, mut points) = (vec![(0.0, gross_slip, 0)], 0);
         while let Some((from, to, halvings)) = open.pop() {
             points += TWENTY_FOUR.places(from, to).len();
-            let terms = TWENTY_FOUR.terms(&TWENTY_FOUR.places(from, to).map(|at| curve.exact(at) / at));
-            let series = chebyshev::counted(&terms, RESOLVED);
-            if Points::<24>::resolve(series) {
-                curve.pieces.push(Piece { from, to, series: Some(series.to_vec()) });
+            let terms = TWENTY_FOUR.terms(&TWENTY_FOUR.places(from, to).map(|at| curve.force(at) / at));
+            let counted = chebyshev::counted(&terms, RESOLVED);
+            if Points::<24>::resolve(counted) {
+                series.pieces.push(Piece { from, to, series: Some(counted.to_vec()) });
             } else if halvings < HALVINGS && points < MOST_POINTS {
                 let middle = from.midpoint(to);
                 open.extend([(middle, to, halvings + 1), (from, middle, halvings + 1)]);
             } else {
-                curve.pieces.push(Piece { from, to, series: None });
+                series.pieces.push(Piece { from, to, series: None });
             }
         }
-        curve
+        series
     }
 
     /// The force at a displacement from rest, N.
@@ -72,16 +68,10 @@ impl<'a> FirstLoading<'a> {
             return 0.0;
         }
         let piece = &self.pieces[self.pieces.partition_point(|piece| piece.to <= displacement)];
-        let Some(series) = &piece.series else { return self.exact(displacement) };
+        let Some(series) = &piece.series else { return self.curve.force(displacement) };
         let [stiffness] =
             chebyshev::values(series, [2.0 * (displacement - piece.from) / (piece.to - piece.from) - 1.0]);
         stiffness * displacement
-    }
-
-    /// The force, N, at a displacement above zero that does not slide, m.
-    fn exact(&self, displacement: f64) -> f64 {
-        let ring = slipped(self.contact, self.contact.scaled(DoubleDouble::from(displacement)));
-        self.contact.force_unit() * load(&self.contact.indenter, &ring)
     }
 }
 
@@ -100,7 +90,7 @@ impl MasingLoop {
     }
 
     /// The force on the present branch, N.
-    pub(super) fn force(&self, loading: &FirstLoading<'_>, displacement: f64) -> f64 {
+    pub(super) fn force(&self, loading: &LoadingSeries<'_>, displacement: f64) -> f64 {
         match self.turns.last() {
             None => self.direction * loading.force(self.direction * displacement),
             Some((from, force)) => {
@@ -110,7 +100,7 @@ impl MasingLoop {
     }
 
     /// The displacement at which the whole contact begins to slide on this branch, m.
-    pub(super) fn slides_at(&self, loading: &FirstLoading<'_>) -> f64 {
+    pub(super) fn slides_at(&self, loading: &LoadingSeries<'_>) -> f64 {
         match self.turns.last() {
             None => self.direction * loading.gross_slip,
             Some((from, _)) => from + 2.0 * self.direction * loading.gross_slip,
@@ -132,7 +122,7 @@ impl MasingLoop {
     }
 
     /// Turns back at this displacement.
-    pub(super) fn turn(&mut self, loading: &FirstLoading<'_>, displacement: f64) {
+    pub(super) fn turn(&mut self, loading: &LoadingSeries<'_>, displacement: f64) {
         let force = self.force(loading, displacement);
         self.turns.push((displacement, force));
         self.direction = -self.direction;

@@ -9,7 +9,7 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use super::masing_loop::{FirstLoading, MasingLoop};
+use super::masing_loop::{LoadingSeries, MasingLoop};
 use crate::numerics::roots::between;
 
 /// Steps into which the last column of the extrapolation divides, and twice that is its order.
@@ -42,7 +42,7 @@ pub(super) enum Unfinished {
 
 /// The mass, its drive and its contact.
 pub(super) struct DrivenMass<'a> {
-    pub(super) loading: &'a FirstLoading<'a>,
+    pub(super) loading: &'a LoadingSeries<'a>,
     /// Of the drive, Hz.
     pub(super) frequency: f64,
     /// P, N.

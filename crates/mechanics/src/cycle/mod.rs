@@ -33,6 +33,7 @@ pub use timed::TimedCycle;
 use std::f64::consts::PI;
 
 use crate::contact::Contact;
+use crate::contact::first_loading::FirstLoading;
 use crate::contact::normal::{depth_for, load, whole};
 use crate::contact::state::Regime;
 use crate::numerics::double_double::DoubleDouble;
@@ -65,12 +66,6 @@ pub struct SteadyCycle<'a> {
     moments: Moments,
     /// How far the contact slides as a whole, m.
     slide: f64,
-}
-
-/// The ring that has slipped when a contact has been moved from rest by this much, scaled, m.
-fn slipped(contact: &Contact, depth: DoubleDouble) -> Ring {
-    let edge = *contact.history.edge();
-    Ring::between(contact.indenter.point(edge.level - depth), edge)
 }
 
 impl<'a> SteadyCycle<'a> {
@@ -159,7 +154,7 @@ impl<'a> SteadyCycle<'a> {
 
     fn new(contact: &'a Contact, depth: DoubleDouble, slide: f64) -> SteadyCycle<'a> {
         let edge = *contact.history.edge();
-        let ring = if edge.level.value() > 0.0 { slipped(contact, depth) } else { Ring::default() };
+        let ring = if edge.level.value() > 0.0 { FirstLoading(contact).slipped(depth) } else { Ring::default() };
         let moments = if ring.depth > 0.0 { contact.indenter.moments(&ring) } else { Moments::default() };
         SteadyCycle {
             contact,
@@ -178,7 +173,7 @@ impl<'a> SteadyCycle<'a> {
         let edge = *contact.history.edge();
         let (own, machine) = (contact.scale(), compliance * contact.force_unit());
         let beyond = |depth: f64| {
-            let ring = slipped(contact, DoubleDouble::from(depth));
+            let ring = FirstLoading(contact).slipped(DoubleDouble::from(depth));
             let moved = own * depth + machine * load(&contact.indenter, &ring);
             (moved - amplitude, own + machine * ring.inner.radius)
         };

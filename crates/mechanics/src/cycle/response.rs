@@ -13,7 +13,7 @@
 use std::cell::Cell;
 use std::f64::consts::TAU;
 
-use super::masing_loop::FirstLoading;
+use super::masing_loop::LoadingSeries;
 use super::mass_motion::{DrivenMass, Unfinished};
 use super::{Drive, Harmonic, SteadyCycle};
 use crate::contact::Contact;
@@ -101,7 +101,7 @@ impl Resonator {
             stopped.set(stopped.get() || !keep_going());
             !stopped.get()
         };
-        let loading = FirstLoading::new(contact);
+        let loading = LoadingSeries::new(contact);
         let respond = |&frequency: &f64| {
             keep_going().then_some(())?;
             let mass = DrivenMass {
