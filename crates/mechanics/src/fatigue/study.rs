@@ -78,8 +78,14 @@ pub struct Ratings {
     pub instants: usize,
 }
 
-/// A field, and the part of the move as prescribed.
-type Field = Rc<(Subsurface, f64)>;
+/// The stresses at an instant.
+struct Field {
+    stresses: Subsurface,
+    /// The part of the move as prescribed.
+    part: f64,
+    /// Whether it is kept for other places.
+    lasting: bool,
+}
 
 /// Measures of a cycle in one of the bodies.
 pub struct Study<'a> {
@@ -103,8 +109,8 @@ pub struct Study<'a> {
     /// The largest value of each measure so far.
     reference: Vec<f64>,
     /// Fields at instants of all places, and at those of one radius.
-    shared: HashMap<(usize, u64), Field>,
-    near: HashMap<(usize, u64), Field>,
+    shared: HashMap<(usize, u64), Rc<Field>>,
+    near: HashMap<(usize, u64), Rc<Field>>,
     near_radius: f64,
     /// How many are kept of each kind.
     kept: usize,
@@ -376,11 +382,9 @@ impl<'a> Study<'a> {
         let mut curve = StressCurve::follow(&stretches, allowed, |step, part, shared| {
             let field = self.field(step, part, shared)?;
             let (stress, off) = if self.averaged > 0.0 {
-                mean_over_depth(&field.0, *place, self.averaged, averaging)
+                mean_over_depth(&field.stresses, *place, self.averaged, averaging)
             } else {
-                // One that other places find again.
-                let lasting = shared && Rc::strong_count(&field) > 1;
-                (self.stress(&field.0, *place, lasting, &mut sums), 0.0)
+                (self.stress(&field, *place, &mut sums), 0.0)
             };
             averaging_error = averaging_error.max(off);
             Ok(self.looked_at(&field, stress, step, (radius, surface)))
@@ -389,9 +393,10 @@ impl<'a> Study<'a> {
         Ok(curve)
     }
 
-    /// The stress at a place in a field that lasts for others, or in one that it has for itself. By the sums of the
-    /// place, which are kept, unless a profile of many cells is asked for in lasting fields alone.
-    fn stress(&self, field: &Subsurface, place: [f64; 3], lasting: bool, sums: &mut Option<PlaceSums>) -> Stress {
+    /// The stress at a place. By the sums of the place, which are kept, unless a profile of many cells is asked for in
+    /// lasting fields alone.
+    fn stress(&self, field: &Field, place: [f64; 3], sums: &mut Option<PlaceSums>) -> Stress {
+        let Field { stresses: field, lasting, .. } = field;
         if (!lasting || self.has_few_cells) && sums.is_none() && field.contact.memory_depth() <= FEW_RINGS {
             *sums = field.place_sums(place, self.radius);
         }
@@ -402,7 +407,7 @@ impl<'a> Study<'a> {
     }
 
     /// The field at an instant.
-    fn field(&mut self, step: usize, part: f64, shared: bool) -> Result<Field, Error> {
+    fn field(&mut self, step: usize, part: f64, shared: bool) -> Result<Rc<Field>, Error> {
         let fields = if shared { &mut self.shared } else { &mut self.near };
         if let Some(field) = fields.get(&(step, part.to_bits())) {
             return Ok(field.clone());
@@ -411,8 +416,10 @@ impl<'a> Study<'a> {
             return Err(Error::Interrupted);
         }
         let (state, prescribed) = self.cycle.state(step, part);
-        let field = Rc::new((state.into_subsurface(self.body.0, self.body.1)?, prescribed));
-        if fields.len() < self.kept {
+        let kept = fields.len() < self.kept;
+        let stresses = state.into_subsurface(self.body.0, self.body.1)?;
+        let field = Rc::new(Field { stresses, part: prescribed, lasting: shared && kept });
+        if kept {
             fields.insert((step, part.to_bits()), field.clone());
         }
         Ok(field)
@@ -426,7 +433,7 @@ impl<'a> Study<'a> {
         step: usize,
         (radius, surface): (f64, bool),
     ) -> (StressSample, bool) {
-        let (field, part) = (&field.0, field.1);
+        let Field { stresses: field, part, .. } = field;
         if let Some(Bulk { mean, amplitude, phase }) = self.bulk {
             xx += mean + amplitude * (TAU * (step as f64 + part) / self.cycle.moves() as f64 + phase).cos();
         }
