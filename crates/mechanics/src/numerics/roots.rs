@@ -35,35 +35,66 @@ pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, mut f: impl FnMu
     x
 }
 
-/// The root of a function without a slope between two places where its signs differ, each given with its value: false
-/// position with the weights of Anderson & Björck (1973), which gains digits by a power of 1.7 a step. Ends where the
-/// bracket is no wider than `width` or the function is zero, with the end of the bracket at which the function is
-/// nearer to zero.
+/// The root of a function without a slope between two places where its signs differ, each given with its value. Ends
+/// where the bracket is no wider than `width` or the function is zero, with the end of the bracket at which the function
+/// is nearer to zero.
 pub(crate) fn between(ends: [(f64, f64); 2], width: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
-    let [mut kept, mut last] = ends;
-    let [mut at_kept, mut at_last] = [kept.1, last.1];
-    for count in 1..MOST_STEPS {
-        if at_last.abs() <= 0.0 || (last.0 - kept.0).abs() <= width {
-            break;
+    let mut bracket = Bracket::new(ends, width);
+    while let Some(x) = bracket.next() {
+        bracket.take(x, f(x));
+    }
+    bracket.root()
+}
+
+/// A search as [`between`] makes it, for whoever looks for many roots side by side: false position with the weights of
+/// Anderson & Björck (1973), which gains digits by a power of 1.7 a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bracket {
+    /// Its ends with the values there, the last of which came last.
+    kept: (f64, f64),
+    last: (f64, f64),
+    /// The value at the end that is kept, weighted.
+    at_kept: f64,
+    width: f64,
+    count: usize,
+}
+
+impl Bracket {
+    pub(crate) fn new([kept, last]: [(f64, f64); 2], width: f64) -> Bracket {
+        Bracket { kept, last, at_kept: kept.1, width, count: 1 }
+    }
+
+    /// The place at which the function is wanted next; `None` at the end of the search.
+    pub(crate) fn next(&self) -> Option<f64> {
+        let Bracket { kept, last, at_kept, width, count } = *self;
+        let length = (last.0 - kept.0).abs();
+        if count >= MOST_STEPS || last.1.abs() <= 0.0 || length <= width {
+            return None;
         }
         // Every fourth step halves the bracket, because the weights alone may leave one end where it is.
-        let share = if count % 4 > 0 { at_last / (at_last - at_kept) } else { 0.5 };
+        let share = if count % 4 > 0 { last.1 / (last.1 - at_kept) } else { 0.5 };
         // At least half the width from the last place, so that the bracket closes from both sides.
-        let step = (last.0 - kept.0).abs() * share.clamp(0.0, 1.0);
-        let step = step.max(0.5 * width).copysign(kept.0 - last.0);
-        let x = last.0 + step;
-        let value = f(x);
-        if (value > 0.0) == (last.1 > 0.0) {
-            let weight = 1.0 - value / at_last;
-            at_kept *= if weight > 0.0 { weight } else { 0.5 };
-        } else {
-            kept = last;
-            at_kept = at_last;
-        }
-        last = (x, value);
-        at_last = value;
+        let step = (length * share.clamp(0.0, 1.0)).max(0.5 * width);
+        Some(last.0 + step.copysign(kept.0 - last.0))
     }
-    if last.1.abs() <= kept.1.abs() { last.0 } else { kept.0 }
+
+    /// Takes the value at that place.
+    pub(crate) fn take(&mut self, x: f64, value: f64) {
+        if (value > 0.0) == (self.last.1 > 0.0) {
+            let weight = 1.0 - value / self.last.1;
+            self.at_kept *= if weight > 0.0 { weight } else { 0.5 };
+        } else {
+            self.kept = self.last;
+            self.at_kept = self.last.1;
+        }
+        self.last = (x, value);
+        self.count += 1;
+    }
+
+    /// The end at which the function is nearer to zero.
+    pub(crate) fn root(&self) -> f64 {
+        if self.last.1.abs() <= self.kept.1.abs() { self.last.0 } else { self.kept.0 }
+    }
 }
 
 /// Where something turns from false at the first place to true at the second: two places as near to each other as

@@ -13,6 +13,8 @@ const KINK_FLOOR: f64 = 1e-3;
 /// The same limit where the profile makes the derivative infinite: at this part of the square of the radius, half that
 /// of the radius.
 pub(super) const KNOT_FLOOR: f64 = 1e-14;
+/// It is no further from the end than this, however thin the interval.
+const LEAST_FLOOR: f64 = 14.0;
 /// Beyond this place a distance is below the round-off of twice the digits.
 pub(super) const MAX_PLACE: f64 = 72.0;
 /// Towards a knot a logarithm is followed by places that grow by this factor.
@@ -35,6 +37,7 @@ pub(super) enum EndBehaviour {
 /// An interval of radii in which the shear stress is smooth. A *place* q in it runs from minus infinity at the inner
 /// end to infinity at the outer: e^-|q| is the distance to the nearer end, in halves of the difference of their
 /// squares.
+#[derive(Clone, Copy)]
 pub(super) struct StressInterval {
     pub(super) inner: StressRadius,
     pub(super) outer: StressRadius,
@@ -78,7 +81,7 @@ impl StressInterval {
 
     /// The place nearest to an end that is sampled where the profile makes the derivative infinite, without the sign.
     fn floor(&self) -> f64 {
-        (self.half() / (KNOT_FLOOR * self.outer.square.value())).ln().clamp(0.0, MAX_PLACE)
+        (self.half() / (KNOT_FLOOR * self.outer.square.value())).ln().clamp(LEAST_FLOOR, MAX_PLACE)
     }
 
     /// The place up to which the sign at an end is taken to hold: about a knot as far as the floor.
@@ -86,8 +89,14 @@ impl StressInterval {
         if end == EndBehaviour::Logarithm { self.floor() } else { f64::INFINITY }
     }
 
+    /// The places at which it is sampled, from the inner end to the outer.
+    pub(super) fn places(&self) -> Vec<f64> {
+        let inward = self.towards(self.start).into_iter().rev().map(|place| -place);
+        inward.chain([0.0]).chain(self.towards(self.end)).collect()
+    }
+
     /// The places from the middle towards an end.
-    pub(super) fn places(&self, (end, sign): (EndBehaviour, f64)) -> Vec<f64> {
+    fn towards(&self, (end, sign): (EndBehaviour, f64)) -> Vec<f64> {
         let (half, floor) = (self.half(), self.floor());
         let by_steps = |step: f64, last: f64| {
             let steps = (1..).map(move |index| step * f64::from(index));

@@ -15,7 +15,7 @@ mod settled;
 use crate::cells::shape::Kink;
 use crate::contact::Contact;
 use crate::indenter::RingSum;
-use crate::numerics::roots::between;
+use crate::numerics::roots::Bracket;
 use crate::profile::StressRadius;
 use derivative::{Derivative, NOISE, Pace};
 use interval::{EndBehaviour, KNOT_FLOOR, MAX_PLACE, Sample, StressInterval};
@@ -27,6 +27,9 @@ const SPARSE_ABOVE: usize = 100;
 /// A root is known when its place is to this, relative to one more than it: the distance to the nearer end, to as much
 /// of itself. The stress at the extremum is then off by the square of this, which is far below its rounding.
 const RESOLUTION: f64 = 1e-12;
+/// Samples that are taken at once.
+const SAMPLES_AT_ONCE: usize = 4096;
+
 /// The extrema of the shear stress.
 pub(crate) struct Extrema<'a> {
     /// Their radii, from the centre outward.
@@ -53,7 +56,25 @@ impl Contact {
         let knots = &knots[..knots.partition_point(|knot| searched && knot.at.square < edge.square)];
         let pace = Pace::new(&keep_going);
         let derivative = Derivative::new(self, &pace);
-        let mut search = Search { derivative: &derivative, sign: 0.0, places: Vec::new() };
+        // The knots between kink `index` and the next.
+        let between = |index: usize| {
+            let to = pieces.get(index + 1).map_or(edge.square, |next| next.inner.square);
+            let begins = knots.partition_point(|knot| knot.at.square <= from(index).square);
+            begins..knots.partition_point(|knot| knot.at.square < to).max(begins)
+        };
+        // How the derivative begins at each kink and knot.
+        let mut begin = Vec::new();
+        for index in (0..pieces.len()).filter(|&index| known[index] != Known::Sign) {
+            if from(index).square < edge.square {
+                let within = between(index);
+                let sparse = within.len() > SPARSE_ABOVE;
+                begin.push(from(index));
+                begin.extend(knots[within].iter().filter_map(|knot| beside(knot, sparse)));
+            }
+        }
+        let mut signs = derivative.at(&begin).into_iter();
+        let mut sign = || signs.next().unwrap_or(0.0);
+        let mut search = Search::new(&derivative);
         for (index, &bend) in bends.iter().enumerate() {
             if !pace.goes_on() {
                 return None;
@@ -65,7 +86,7 @@ impl Contact {
                 break;
             }
             if known[index] == Known::Sign {
-                search.cross(&from, -bend);
+                search.steps.push(Step::Cross(from, -bend));
                 continue;
             }
             let outer = pieces.get(index + 1).map_or(*self.history.edge(), |next| next.inner);
@@ -76,22 +97,13 @@ impl Contact {
             } else {
                 (EndBehaviour::InverseRoot((beyond.square - outer.square).value()), -bend)
             };
-            let begins = knots.partition_point(|knot| knot.at.square <= from.square);
-            let ends = knots.partition_point(|knot| knot.at.square < to.square).max(begins);
-            let sparse = ends - begins > SPARSE_ABOVE;
-            let within = (begins..ends).map(|index| {
+            let mut start = self.start(index, &from, knots, sign());
+            let within = between(index);
+            let (ends, first, sparse) = (within.end, within.start, within.len() > SPARSE_ABOVE);
+            let within = within.map(|index| {
                 let Kink { at, powers } = knots[index];
-                let rim = powers.singular();
-                // At the same distance on either side a logarithm has the same value: one sample serves both.
-                let beside = at.square * (1.0 + KNOT_FLOOR);
-                let infinite = if rim {
-                    derivative.at(&at)
-                } else if sparse {
-                    derivative.at(&StressRadius { square: beside, ..at })
-                } else {
-                    0.0
-                };
-                if rim && infinite.is_infinite() {
+                let infinite = beside(&knots[index], sparse).map_or(0.0, |_| sign());
+                if powers.singular() && infinite.is_infinite() {
                     // Where tau is infinite its derivative has one sign on the one side and the other on the other.
                     let next = if index + 1 < ends { knots[index + 1].at.square } else { to.square };
                     let end = EndBehaviour::Inverse((next - at.square).value());
@@ -100,14 +112,13 @@ impl Contact {
                     (at, (EndBehaviour::Logarithm, infinite), (EndBehaviour::Logarithm, infinite))
                 }
             });
-            let mut start = self.start(index, &from, knots, &derivative);
             let mut inner = from;
             for (position, (outer, end, next)) in within.chain([(to, last, last)]).enumerate() {
                 if !pace.goes_on() {
                     return None;
                 }
                 // Beyond the last knot, the sign that the flat or the bend inside it hides may be known.
-                let outermost = begins + position == ends;
+                let outermost = first + position == ends;
                 let known = if !outermost {
                     Known::Nothing
                 } else if position == 0 {
@@ -117,17 +128,17 @@ impl Contact {
                 };
                 let one_change = known == Known::OneChange;
                 if known == Known::Sign || one_change && start.1 * end.1 > 0.0 {
-                    search.cross(&inner, -bend);
+                    search.steps.push(Step::Cross(inner, -bend));
                 } else {
-                    search.search_interval(&StressInterval { inner, outer, start, end, sparse, one_change });
+                    search.add(StressInterval { inner, outer, start, end, sparse, one_change });
                 }
                 (inner, start) = (outer, next);
             }
         }
+        let mut places = search.places();
         if pace.stopped() {
             return None;
         }
-        let Search { mut places, .. } = search;
         let singular: Vec<StressRadius> = self.indenter.singular().collect();
         let spike = |place: &StressRadius| {
             place.square >= edge.square || singular.iter().any(|spike| spike.square == place.square)
@@ -136,15 +147,9 @@ impl Contact {
         Some(Extrema { places, sum: derivative.into_sum() })
     }
 
-    /// How the derivative begins beyond kink `index` of the slip history, the centre for the first.
-    fn start(
-        &self,
-        index: usize,
-        from: &StressRadius,
-        knots: &[Kink],
-        derivative: &Derivative<'_, '_>,
-    ) -> (EndBehaviour, f64) {
-        let sign = derivative.at(from);
+    /// How the derivative, which has this sign there, begins beyond kink `index` of the slip history, the centre for
+    /// the first.
+    fn start(&self, index: usize, from: &StressRadius, knots: &[Kink], sign: f64) -> (EndBehaviour, f64) {
         let end = if index == 0 {
             let slips = self.history.pieces()[0].line.slope.value().abs() > 0.0;
             if !slips || self.indenter.smooth_centre() { EndBehaviour::Smooth } else { EndBehaviour::Inverse(0.0) }
@@ -163,41 +168,129 @@ impl Contact {
     }
 }
 
-/// The search on its way from the centre outward.
-struct Search<'s, 'c, 'p> {
-    derivative: &'s Derivative<'c, 'p>,
-    /// The sign that the derivative had last, zero before the first.
-    sign: f64,
-    places: Vec<StressRadius>,
+/// Where the sign of the derivative at a knot is asked for, if it is: at the same distance on either side a logarithm
+/// has the same value, so that one sample serves both.
+fn beside(Kink { at, powers }: &Kink, sparse: bool) -> Option<StressRadius> {
+    if powers.singular() {
+        Some(*at)
+    } else {
+        sparse.then(|| StressRadius { square: at.square * (1.0 + KNOT_FLOOR), ..*at })
+    }
 }
 
-impl Search<'_, '_, '_> {
+/// A step of the search on its way from the centre outward.
+enum Step {
+    /// Crosses a radius beyond which the derivative has the sign of a value.
+    Cross(StressRadius, f64),
+    /// Goes through an interval, which is sampled at these places.
+    Interval(StressInterval, Vec<f64>),
+}
+
+/// An extremum.
+enum Turn {
+    /// At the radius where two intervals meet.
+    At(StressRadius),
+    /// Within an interval.
+    Within(StressInterval, Bracket),
+}
+
+/// The search: samples of many intervals are taken at once, and their roots found side by side.
+struct Search<'s, 'c, 'p> {
+    derivative: &'s Derivative<'c, 'p>,
+    /// The steps that have not been gone.
+    steps: Vec<Step>,
+    /// The samples that they take.
+    samples: usize,
+    /// The sign that the derivative had last, zero before the first.
+    sign: f64,
+    turns: Vec<Turn>,
+}
+
+impl<'s, 'c, 'p> Search<'s, 'c, 'p> {
+    fn new(derivative: &'s Derivative<'c, 'p>) -> Search<'s, 'c, 'p> {
+        Search { derivative, steps: Vec::new(), samples: 0, sign: 0.0, turns: Vec::new() }
+    }
+
+    /// Adds an interval to the steps.
+    fn add(&mut self, interval: StressInterval) {
+        if interval.half() <= 0.0 {
+            return;
+        }
+        let places = interval.places();
+        self.samples += places.len();
+        self.steps.push(Step::Interval(interval, places));
+        if self.samples >= SAMPLES_AT_ONCE {
+            self.go();
+        }
+    }
+
+    /// Goes the steps that are waiting.
+    fn go(&mut self) {
+        let steps = std::mem::take(&mut self.steps);
+        let mut radii = Vec::with_capacity(std::mem::take(&mut self.samples));
+        for step in &steps {
+            if let Step::Interval(interval, places) = step {
+                radii.extend(places.iter().map(|&place| interval.at(place)));
+            }
+        }
+        let mut values = self.derivative.at(&radii).into_iter();
+        for step in steps {
+            match step {
+                Step::Cross(at, value) => self.cross(&at, value),
+                Step::Interval(interval, places) => {
+                    let sample = |(place, value): (f64, f64)| Sample { place, value: value * interval.weight(place) };
+                    self.go_through(&interval, places.into_iter().zip(&mut values).map(sample));
+                }
+            }
+        }
+    }
+
+    /// All extrema, at the end.
+    fn places(mut self) -> Vec<StressRadius> {
+        self.go();
+        loop {
+            let next = |turn| match turn {
+                &mut Turn::Within(interval, ref mut bracket) => bracket.next().map(|place| (interval, place, bracket)),
+                Turn::At(_) => None,
+            };
+            let open: Vec<(StressInterval, f64, &mut Bracket)> = self.turns.iter_mut().filter_map(next).collect();
+            if open.is_empty() {
+                break;
+            }
+            let radii: Vec<StressRadius> = open.iter().map(|(interval, place, _)| interval.at(*place)).collect();
+            for ((interval, place, bracket), value) in open.into_iter().zip(self.derivative.at(&radii)) {
+                bracket.take(place, value * interval.weight(place));
+            }
+        }
+        let place = |turn| match turn {
+            Turn::At(radius) => Some(radius),
+            // An extremum this near to the centre cannot be distinguished from the centre.
+            Turn::Within(interval, bracket) => (interval.inner.square.value() > 0.0
+                || bracket.root() > 1.0 - MAX_PLACE)
+                .then(|| interval.at(bracket.root())),
+        };
+        self.turns.into_iter().filter_map(place).collect()
+    }
+
     /// Crosses a radius beyond which the derivative has the sign of `value`.
     fn cross(&mut self, at: &StressRadius, value: f64) {
         if self.sign * value.signum() < 0.0 {
-            self.places.push(*at);
+            self.turns.push(Turn::At(*at));
         }
         self.sign = value.signum();
     }
 
-    fn sample(&self, interval: &StressInterval, place: f64) -> Sample {
-        Sample { place, value: self.derivative.at(&interval.at(place)) * interval.weight(place) }
+    fn sample<const N: usize>(&self, interval: &StressInterval, places: [f64; N]) -> [Sample; N] {
+        let values = self.derivative.at(&places.map(|place| interval.at(place)));
+        std::array::from_fn(|lane| Sample { place: places[lane], value: values[lane] * interval.weight(places[lane]) })
     }
 
-    /// Goes through an interval from its inner end to its outer.
-    fn search_interval(&mut self, interval: &StressInterval) {
-        if interval.half() <= 0.0 {
-            return;
-        }
-        let inward = interval.places(interval.start).into_iter().rev().map(|place| -place);
-        let outward = interval.places(interval.end);
-        let mut samples = vec![Sample { place: -interval.limit(interval.start.0), value: interval.start.1 }];
-        let places: Vec<f64> = inward.chain([0.0]).chain(outward).collect();
-        let radii: Vec<StressRadius> = places.iter().map(|&place| interval.at(place)).collect();
-        let values = self.derivative.at_all(&radii);
-        let sample = |(place, value): (f64, f64)| Sample { place, value: value * interval.weight(place) };
-        samples.extend(places.into_iter().zip(values).map(sample));
-        samples.push(Sample { place: interval.limit(interval.end.0), value: interval.end.1 });
+    /// Goes through an interval from its inner end to its outer, past samples of it.
+    fn go_through(&mut self, interval: &StressInterval, between: impl Iterator<Item = Sample>) {
+        let end = |(end, sign): (EndBehaviour, f64)| Sample { place: interval.limit(end), value: sign };
+        let start = end(interval.start);
+        let mut samples = vec![Sample { place: -start.place, ..start }];
+        samples.extend(between.chain([end(interval.end)]));
         samples.retain(|sample| sample.value.abs() > 0.0);
         let Some(first) = samples.first() else { return };
         self.cross(&interval.inner, first.value);
@@ -225,7 +318,7 @@ impl Search<'_, '_, '_> {
         let sign = low.value.signum();
         for _ in 0..48 {
             let third = (high.place - low.place) / 3.0;
-            let (lower, upper) = (self.sample(interval, low.place + third), self.sample(interval, high.place - third));
+            let [lower, upper] = self.sample(interval, [low.place + third, high.place - third]);
             if let Some(&through) = [lower, upper].iter().find(|sample| sample.value * sign < 0.0) {
                 return Some(through);
             }
@@ -241,7 +334,7 @@ impl Search<'_, '_, '_> {
         None
     }
 
-    /// Finds the change of sign between two samples. At an end that is infinitely far the sign alone is known.
+    /// Leaves a change of sign between two samples to be found. At an end that is infinitely far the sign alone is known.
     fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample) {
         let end = |sample: Sample, other: Sample| {
             let size = if sample.place.is_finite() { sample.value.abs() } else { other.value.abs() };
@@ -249,11 +342,7 @@ impl Search<'_, '_, '_> {
         };
         let ends = [end(from, to), end(to, from)];
         let nearest = if ends[0].0 * ends[1].0 > 0.0 { ends[0].0.abs().min(ends[1].0.abs()) } else { 0.0 };
-        let root = between(ends, RESOLUTION * (1.0 + nearest), |place| self.sample(interval, place).value);
         self.sign = -from.value.signum();
-        // An extremum this near to the centre cannot be distinguished from the centre.
-        if interval.inner.square.value() > 0.0 || root > 1.0 - MAX_PLACE {
-            self.places.push(interval.at(root));
-        }
+        self.turns.push(Turn::Within(*interval, Bracket::new(ends, RESOLUTION * (1.0 + nearest))));
     }
 }
