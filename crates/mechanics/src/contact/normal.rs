@@ -22,8 +22,11 @@ const PRESSURE_SCAN: usize = 64;
 const LEVEL_SCAN: usize = 32;
 /// The most kinks of a profile that are among its places.
 const KINKS: usize = 64;
-/// The highest places beside which a maximum is searched for.
+/// The highest places, and the highest kinks, beside which a maximum is searched for.
 const SEARCHED: usize = 3;
+const SEARCHED_KINKS: usize = 8;
+/// Places between two others at which the pressure is looked at more closely, ever nearer to both.
+const FINER: [f64; 7] = [0.001, 0.03, 0.2, 0.5, 0.8, 0.97, 0.999];
 
 /// The normal load at the start. Zero is a contact just touching.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -225,48 +228,80 @@ pub(crate) fn max_pressure(indenter: &Indenter, elasticity: &Elasticity, edge: &
         return None;
     }
     if face.falls(0.0, edge.radius).least > 0.0 {
-        return Some(at(&StressRadius::new(0.0)));
+        return Some(at(&StressRadius::new(0.0))).filter(|most| most.is_finite());
     }
-    // A scan, then a search about its largest value: a profile that is steep outside has its maximum off the
-    // centre. Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which
-    // may be narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too,
-    // and distinguished by their squares.
+    // A scan, then a search about its largest values: a profile that is steep outside has its maximum off the centre.
+    // Beside a flat end that hardly exceeds the contact it lies within the thin annulus beyond the flat, which may be
+    // narrower than a unit in the last place of a radius: so radii at even steps of the level are scanned too, and
+    // distinguished by their squares.
+    let whole = [(whole(face, &edge), elasticity.e_star() / std::f64::consts::PI)];
     let radius = |index: usize| edge.radius * index as f64 / PRESSURE_SCAN as f64;
     let level = |index: usize| edge.level * (index as f64 / LEVEL_SCAN as f64);
-    let mut squares: Vec<DoubleDouble> = (0..PRESSURE_SCAN)
+    // At a kink the derivative is infinite, so that even radii miss a maximum beside it.
+    let places = face.kinks().iter().map(|kink| kink.at.square).take_while(|square| *square < edge.square);
+    let kinks = scanned(face, &whole, places.collect());
+    let mut highest = kinks.clone();
+    highest.sort_by(|one, other| other.pressure.total_cmp(&one.pressure));
+    let mut places: Vec<DoubleDouble> = (0..PRESSURE_SCAN)
         .map(|index| DoubleDouble::square_of(radius(index)))
         .chain((0..LEVEL_SCAN).map(|index| face.point(level(index)).square))
-        .chain(highest_kinks(face, elasticity, &edge))
+        .chain(highest.iter().take(KINKS).map(|kink| kink.square))
+        .filter(|square| *square < edge.square)
         .collect();
-    squares.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
-    squares.push(edge.square);
-    let inside = |square: DoubleDouble| {
-        let place = StressRadius { radius: square.value().sqrt(), square };
-        if square < edge.square { at(&place) } else { 0.0 }
-    };
-    // Kinks are among the places, so that between two of these the pressure has one maximum; where it is infinitely
-    // steep at a place, the maximum may be beside a lower one than the highest.
-    let mut order: Vec<(usize, f64)> = squares.iter().map(|square| inside(*square)).enumerate().collect();
-    order.sort_by(|one, other| other.1.total_cmp(&one.1));
-    let mut most = order[0].1;
-    for index in order.into_iter().take(SEARCHED).flat_map(|(index, _)| [index.checked_sub(1), Some(index)]).flatten() {
-        if let Some(&high) = squares.get(index + 1) {
-            let (low, width) = (squares[index], high - squares[index]);
+    places.sort_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+    places.dedup();
+    let mut scan = scanned(face, &whole, places);
+    scan.push(Scanned { square: edge.square, pressure: 0.0 });
+    // Between two places, kinks among them, the pressure has one maximum. It is beside a place that is higher than its
+    // neighbours or, where the pressure rises infinitely steeply, beside a kink.
+    let mut beside = hills(&scan);
+    let of_kink = |kink: &Scanned| scan.iter().position(|place| place.square == kink.square);
+    beside.extend(highest.iter().take(SEARCHED_KINKS).filter_map(of_kink));
+    let mut stretches: Vec<usize> = beside.into_iter().flat_map(|index| [index.saturating_sub(1), index]).collect();
+    stretches.sort_unstable();
+    stretches.dedup();
+    stretches.retain(|index| index + 1 < scan.len());
+    let finer = stretches.iter().flat_map(|&index| {
+        let (low, width) = (scan[index].square, scan[index + 1].square - scan[index].square);
+        FINER.map(|share| low + width * share)
+    });
+    scan.extend(scanned(face, &whole, finer.collect()));
+    scan.sort_by(|a, b| a.square.partial_cmp(&b.square).unwrap_or(Ordering::Equal));
+    let mut most = scan.iter().map(|place| place.pressure).fold(0.0, f64::max);
+    let inside = |square: DoubleDouble| at(&StressRadius { radius: square.value().sqrt(), square });
+    for index in hills(&scan).into_iter().flat_map(|index| [index.saturating_sub(1), index]) {
+        if let Some(high) = scan.get(index + 1) {
+            let (low, width) = (scan[index].square, high.square - scan[index].square);
             most = most.max(largest([0.0, 1.0], 1e-7, |share| inside(low + width * share)).1);
         }
     }
-    Some(most)
+    most.is_finite().then_some(most)
 }
 
-/// The squares, m^2, of the kinks in the contact at which the pressure is highest: at each its derivative is infinite,
-/// so that even radii miss a maximum there.
-fn highest_kinks(face: &Indenter, elasticity: &Elasticity, edge: &Point) -> impl Iterator<Item = DoubleDouble> {
-    let inside = face.kinks().iter().map(|kink| kink.at).take_while(|at| at.square < edge.square);
-    let places: Vec<StressRadius> = inside.collect();
-    let pressures = face.kernel_sums_at(&[(whole(face, edge), elasticity.e_star())], &places);
-    let mut kinks: Vec<(DoubleDouble, f64)> = places.into_iter().map(|at| at.square).zip(pressures).collect();
-    kinks.sort_by(|one, other| other.1.total_cmp(&one.1));
-    kinks.into_iter().take(KINKS).map(|(square, _)| square)
+/// The square of a radius, m^2, with the pressure there, Pa.
+#[derive(Clone, Copy)]
+struct Scanned {
+    square: DoubleDouble,
+    pressure: f64,
+}
+
+/// The pressures at all of these squares, m^2, at once.
+fn scanned(face: &Indenter, whole: &[(Ring, f64)], squares: Vec<DoubleDouble>) -> Vec<Scanned> {
+    let place = |&square: &DoubleDouble| StressRadius { radius: square.value().sqrt(), square };
+    let places: Vec<StressRadius> = squares.iter().map(place).collect();
+    let pressures = face.kernel_sums_at(whole, &places);
+    squares.into_iter().zip(pressures).map(|(square, pressure)| Scanned { square, pressure }).collect()
+}
+
+/// The highest places that are no lower than their neighbours.
+fn hills(scan: &[Scanned]) -> Vec<usize> {
+    let height = |index: usize| scan.get(index).map_or(0.0, |place| place.pressure);
+    let rises = |index: usize| index == 0 || height(index) >= height(index - 1);
+    let mut hills: Vec<usize> =
+        (0..scan.len()).filter(|&index| rises(index) && height(index) >= height(index + 1)).collect();
+    hills.sort_by(|&one, &other| height(other).total_cmp(&height(one)));
+    hills.truncate(SEARCHED);
+    hills
 }
 
 /// The depth below `outer` (or, if `upward`, above `inner`) of the part of a ring whose load int X dy is `load`, m.

@@ -80,7 +80,7 @@ impl Springs {
             .filter(|near| (near[1].shear - near[0].shear) * (near[2].shear - near[1].shear) < 0.0)
             .map(|near| near[1])
             .collect();
-        Some(Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).is_finite()))
+        Some(Residual::of(self.shear(0.0), peaks, self.shear(self.contact_radius()).abs()))
     }
 }
 

@@ -157,7 +157,7 @@ impl Contact {
         }
         let shear = |x: f64| unit * Self::eccentric_shear(&zones, x)[0];
         let peaks = places.into_iter().map(|radius| Peak { radius, shear: shear(radius) }).collect();
-        Some(Residual::of(shear(0.0), peaks, true))
+        Some(Residual::of(shear(0.0), peaks, 0.0))
     }
 
     /// How much less than at the centre the surface of a line contact has moved over mu, m, at a place x, m.

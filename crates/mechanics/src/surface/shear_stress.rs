@@ -10,6 +10,8 @@ use crate::profile::{Ring, StressRadius};
 const TERMS_PER_QUESTION: usize = 1 << 20;
 /// The fewest radii that are summed together, because they share a preparation.
 const FEWEST_AT_ONCE: usize = 64;
+/// The share of a square that is lost where it is rounded with its radius.
+const ROUNDING: f64 = 1e-15;
 
 /// A local extremum of the shear stress.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,10 +38,12 @@ pub struct Residual {
 }
 
 impl Residual {
-    /// From the shear stress at the centre and the local extrema; `bounded` if it is finite everywhere else.
-    pub(crate) fn of(centre: f64, peaks: Vec<Peak>, bounded: bool) -> Residual {
+    /// From the shear stress at the centre, the local extrema, and the largest magnitude where the profile is singular,
+    /// Pa.
+    pub(crate) fn of(centre: f64, peaks: Vec<Peak>, elsewhere: f64) -> Residual {
         let sizes = || peaks.iter().map(|peak| peak.shear.abs());
-        let max = (bounded && centre.is_finite()).then(|| sizes().fold(centre.abs(), f64::max));
+        let max =
+            (elsewhere.is_finite() && centre.is_finite()).then(|| sizes().fold(centre.abs().max(elsewhere), f64::max));
         let (min, mean) = if peaks.is_empty() {
             (None, None)
         } else {
@@ -122,7 +126,8 @@ impl Contact {
         }
         let mut sum = 0.0;
         for (ring, line) in self.history.rings() {
-            if ring.outer.square < at.square {
+            // The depth of a thin ring may tell it to be wider than its squares do.
+            if ring.outer.square < at.square * (1.0 - ROUNDING) {
                 break;
             }
             let slope = line.slope.value();
@@ -151,7 +156,7 @@ impl Contact {
     /// ```
     #[must_use]
     pub fn residual(&self) -> Residual {
-        self.residual_while(|| true).unwrap_or_else(|| Residual::of(self.shear(0.0), Vec::new(), false))
+        self.residual_while(|| true).unwrap_or_else(|| Residual::of(self.shear(0.0), Vec::new(), f64::NAN))
     }
 
     /// As [`Contact::residual`], while `keep_going` returns true, which is asked at every kink of the slip history and
@@ -170,7 +175,7 @@ impl Contact {
         if let Some(line) = self.eccentric() {
             return self.eccentric_residual(line, keep_going);
         }
-        self.face().map_or(Some(Residual::of(f64::NAN, Vec::new(), false)), |face| face.round_residual(keep_going))
+        self.face().map_or(Some(Residual::of(f64::NAN, Vec::new(), f64::NAN)), |face| face.round_residual(keep_going))
     }
 
     fn round_residual(&self, keep_going: impl Fn() -> bool) -> Option<Residual> {
@@ -193,6 +198,10 @@ impl Contact {
         }
         let peak = |(place, &shear): (&StressRadius, &f64)| Peak { radius: place.radius, shear };
         let peaks = radii[others..].iter().zip(&shears[others..]).map(peak).collect();
-        Some(Residual::of(shears[0], peaks, shears[1..others].iter().all(|shear| shear.is_finite())))
+        // Beside a rim that hardly exceeds the contact an extremum may be nearer to it than squares tell.
+        let spikes = &shears[1..others];
+        let largest = spikes.iter().fold(0.0_f64, |largest, shear| largest.max(shear.abs()));
+        let elsewhere = if spikes.iter().all(|shear| shear.is_finite()) { largest } else { f64::INFINITY };
+        Some(Residual::of(shears[0], peaks, elsewhere))
     }
 }

@@ -240,10 +240,11 @@ impl LineContact {
         Point { level, radius: square.value().sqrt(), square }
     }
 
-    /// Half-width, m, of a level, m.
+    /// Half-width, m, of a level, m: from [`WIDEST`] of the reference length on that itself, which no contact has.
     #[must_use]
     pub fn half_width(&self, level: f64) -> f64 {
-        self.width_at(self.side_of_level(level))
+        let s = self.side_of_level(level);
+        if s < self.last_side() { self.width_at(s) } else { WIDEST * self.reference_length }
     }
 
     /// The level, m, of a half-width, m; zero within the flat.
