@@ -56,6 +56,8 @@ pub(crate) struct Cell {
     pub(crate) level: DoubleDouble,
     pub(crate) load: DoubleDouble,
     pub(crate) centre: f64,
+    /// The most that its kernel is, where it stands for a tip that is less sharp; infinite elsewhere.
+    pub(super) most: f64,
     /// a_j, and a_j/(j + 1), of which only odd ones may count.
     powers: Box<[f64]>,
     integrals: Box<[f64]>,
@@ -91,9 +93,9 @@ impl Cell {
         Cell::of(kink, square, high, powers, step == 2, first)
     }
 
-    /// The cell in place of a tip, up to this radius, m, by its powers.
-    pub(crate) fn tip(radius: f64, powers: &[f64]) -> Cell {
-        Cell::of(0.0, DoubleDouble::ZERO, radius, powers.to_vec(), false, powers.len() - 1)
+    /// The cell in place of a tip, up to this radius, m, by its powers, whose kernel is at most so much.
+    pub(crate) fn tip(radius: f64, powers: &[f64], most: f64) -> Cell {
+        Cell { most, ..Cell::of(0.0, DoubleDouble::ZERO, radius, powers.to_vec(), false, powers.len() - 1) }
     }
 
     fn of(kink: f64, square: DoubleDouble, high: f64, powers: Vec<f64>, odd: bool, first: usize) -> Cell {
@@ -110,6 +112,7 @@ impl Cell {
             level: DoubleDouble::ZERO,
             load: DoubleDouble::ZERO,
             centre: 0.0,
+            most: f64::INFINITY,
             powers: powers.into(),
             integrals,
             odd,

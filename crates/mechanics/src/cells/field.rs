@@ -217,7 +217,7 @@ impl WeightedCells<'_> {
             order.reverse();
         }
         let held = |&index: &usize| {
-            let at = *self.cells.at_least(&radii[index]);
+            let at = radii[index];
             Held { at, cell: self.cells.find(at.radius) }
         };
         let held: Vec<Held> = order.iter().map(held).collect();

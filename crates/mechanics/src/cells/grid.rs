@@ -10,7 +10,6 @@
 //! At a tip where g is an uneven power no cell has a series, and where it is a steep one few points do. What lies so
 //! near to it that the difference is rounding is taken for a cone, or for a parabola, with the right end.
 
-use super::ring::StressRadius;
 use super::shape::{Kink, Powers, Shape};
 use super::{Cell, Cells};
 use crate::numerics::chebyshev::{Points, SIXTEEN, TWENTY_FOUR, counted};
@@ -71,7 +70,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
     keep_going: &dyn Fn() -> bool,
 ) -> Option<Cells> {
     let kinks = shape.kinks();
-    let (mut cells, mut floor, end) = (Vec::new(), 0.0, DoubleDouble::square_of(end));
+    let (mut cells, end) = (Vec::new(), DoubleDouble::square_of(end));
     for (index, &kink) in kinks.iter().enumerate() {
         let base = kink.at.square;
         let next = kinks.get(index + 1).map(|next| next.at.square);
@@ -92,11 +91,12 @@ pub(super) fn cells<S: Shape + ?Sized>(
             let width = fits(core * core);
             let level = shape.level(width.sqrt());
             if power < 2.0 {
-                cells.push(Cell::tip(width.sqrt(), &[level / width.sqrt()]));
-                // There arcosh(x/r) of the cone is n/(n - 1), as it is for the power n at the centre.
-                floor = if power > 1.0 { width.sqrt() / (power / (power - 1.0)).cosh() } else { 0.0 };
+                let slope = level / width.sqrt();
+                // At the centre, where that of the cone is infinite, the kernel of the power n is n/(n - 1) slopes.
+                let most = if power > 1.0 { slope * power / (power - 1.0) } else { f64::INFINITY };
+                cells.push(Cell::tip(width.sqrt(), &[slope], most));
             } else {
-                cells.push(Cell::tip(width.sqrt(), &[0.0, 2.0 * level / width.sqrt()]));
+                cells.push(Cell::tip(width.sqrt(), &[0.0, 2.0 * level / width.sqrt()], f64::INFINITY));
             }
             width
         } else {
@@ -118,7 +118,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
             let (cell, next) = above.further(reached, fits(reached + GROWTH * reached) - reached);
             if !cell.depth.is_finite() {
                 // No contact is so large.
-                return Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, None) });
+                return Some(Cells::new(cells, None));
             }
             cells.push(cell);
             reached = fits(next);
@@ -127,7 +127,7 @@ pub(super) fn cells<S: Shape + ?Sized>(
             return None;
         }
     }
-    Some(Cells { floor: StressRadius::new(floor), ..Cells::new(cells, Some(end)) })
+    Some(Cells::new(cells, Some(end)))
 }
 
 /// How wide the cell above a kink may be, in squares, m^2, of the whole up to the next one, for a singularity beneath

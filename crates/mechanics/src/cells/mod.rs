@@ -75,8 +75,6 @@ pub(crate) struct Cells {
     sources: OnceLock<ClusterTree<Multipole>>,
     /// How steep the cells before each are, and all of them, made when first asked for.
     steepness: OnceLock<Vec<Steepness>>,
-    /// The least radius at which a kernel is not that of the centre.
-    pub(crate) floor: StressRadius,
     pub(crate) top: Top,
     /// Whether squares are as exact as they are beside a kink, everywhere: the edge is a branch point.
     all_digits: bool,
@@ -114,7 +112,6 @@ impl Cells {
             tree: MomentTree::new(totals.into_iter()),
             sources: OnceLock::new(),
             steepness: OnceLock::new(),
-            floor: StressRadius::new(0.0),
             top,
             all_digits: false,
             cells,
@@ -305,14 +302,8 @@ impl Cells {
         cell_span(&self.cells[index], square, radius)
     }
 
-    /// The radius, or the least at which a kernel is not that of the centre.
-    pub(crate) fn at_least<'r>(&'r self, at: &'r StressRadius) -> &'r StressRadius {
-        if at.square < self.floor.square { &self.floor } else { at }
-    }
-
     /// The sum of a kernel over the part of a span beyond r.
     pub(crate) fn sum(&self, kernel: Kernel, at: &StressRadius, span: &Span) -> f64 {
-        let at = self.at_least(at);
         let Some(span) = span.above(at.square, at.radius) else { return 0.0 };
         let SpanParts { low, whole, high } = self.parts(&span);
         let part = |(index, span): CellPart| kernel.near(&self.cells[index], at, &span);

@@ -77,9 +77,7 @@ impl NearPart<'_> {
         }
         let series = Series { terms: &self.terms[..self.cell.powers().len()], odd: self.cell.odd() };
         let (mut values, slopes) = kernels::<N, SLOPE>(series, &stretch);
-        if SLOPE {
-            values = slopes.map(|slope| slope * share);
-        }
+        values = if SLOPE { slopes.map(|slope| slope * share) } else { values.map(|value| value.min(self.cell.most)) };
         if kappa.iter().any(|&kappa| kappa < LEAST_KAPPA * high * high) {
             let far = self.by_rule::<N, SLOPE>(kappa);
             for lane in 0..N {

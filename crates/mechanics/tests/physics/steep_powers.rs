@@ -249,3 +249,33 @@ proptest! {
         }
     }
 }
+
+/// Of g = B x^n + x^2/R the kernel at the centre is int g'/x dx = n/(n - 1) B a^(n-1) + 2 a/R.
+#[test]
+fn the_pressure_at_the_centre_of_a_tip_hardly_less_sharp_than_a_cone_is_finite() {
+    let (a, curvature): (f64, f64) = (1e-4, 100.0);
+    for power in [1.000_001, 1.0001, 1.002, 1.003, 1.0035, 1.3] {
+        let tip = Profile::PowerLaw(PowerLaw::new(power, 0.08).unwrap());
+        for (profile, curvature) in
+            [(tip.clone(), 0.0), (Profile::Sum(Sum::new(vec![sphere(curvature.recip()), tip]).unwrap()), curvature)]
+        {
+            let elasticity = Elasticity::effective(E_STAR, G_STAR).unwrap();
+            let preload = Preload::ContactRadius(a);
+            let mut contact = Contact::new(Setup { profile, elasticity, friction: FRICTION, preload }).unwrap();
+            let level = contact.indentation() - curvature * a * a;
+            let expected = E_STAR * (power / (power - 1.0) * level / a + 2.0 * curvature * a) / std::f64::consts::PI;
+            contact.apply(&displace(2.0 * contact.gross_slip_displacement())).unwrap();
+            let found = [
+                contact.pressure(0.0),
+                contact.pressures(&[0.5 * a, 0.0])[1],
+                contact.summary().max_pressure.unwrap(),
+                contact.shear(0.0) / FRICTION,
+                contact.residual().max.unwrap() / FRICTION,
+            ];
+            for pressure in found {
+                assert!((pressure / expected - 1.0).abs() < 1e-13, "{power}: {found:?} Pa are not {expected} Pa");
+            }
+            assert!(contact.pressure(1e-160) <= expected * (1.0 + 1e-13), "{power}");
+        }
+    }
+}

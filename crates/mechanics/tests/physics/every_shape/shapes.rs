@@ -57,12 +57,7 @@ impl Shape {
 fn number(parameter: &Parameter, draw: &mut Draw<'_>) -> f64 {
     let (shared, index) = (draw.one_of(3), draw.below(SHARED.len()));
     match parameter.name {
-        "exponent" => {
-            let exponent = draw.within(0.4, 9.0);
-            // The pressure at the centre is n/(n - 1) times another; no number is so small as the radius below which a
-            // cone has as much, if that is more than some hundreds.
-            if exponent > 1.0 { exponent.max(1.003) } else { exponent }
-        }
+        "exponent" => draw.within(0.4, 9.0),
         "flat_radius" | "tip_radius" if shared => SHARED[index],
         "coefficient" => 0.0,
         _ => parameter.example * draw.power(-1.0, 1.0),
