@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use serde::ser::{Impossible, Serialize, SerializeSeq, SerializeStruct, Serializer};
+use serde::ser::{Impossible, Serialize, SerializeSeq, SerializeStruct, SerializeTuple, Serializer};
 
 use super::json_value::{Pointer, index};
 use super::reply::finite;
@@ -84,7 +84,7 @@ impl<'p> Serializer for NumberAt<'p> {
     type Ok = Lookup;
     type Error = fmt::Error;
     type SerializeSeq = Inside<'p>;
-    type SerializeTuple = Impossible<Lookup, fmt::Error>;
+    type SerializeTuple = Inside<'p>;
     type SerializeTupleStruct = Impossible<Lookup, fmt::Error>;
     type SerializeTupleVariant = Impossible<Lookup, fmt::Error>;
     type SerializeMap = Impossible<Lookup, fmt::Error>;
@@ -103,7 +103,6 @@ impl<'p> Serializer for NumberAt<'p> {
     }
 
     unexpected! {
-        serialize_tuple(usize) -> SerializeTuple
         serialize_tuple_struct(&'static str, usize) -> SerializeTupleStruct
         serialize_tuple_variant(&'static str, u32, &'static str, usize) -> SerializeTupleVariant
         serialize_map(Option<usize>) -> SerializeMap
@@ -144,6 +143,10 @@ impl<'p> Serializer for NumberAt<'p> {
         Ok(Inside::new(self.0))
     }
 
+    fn serialize_tuple(self, _: usize) -> Result<Inside<'p>, fmt::Error> {
+        Ok(Inside::new(self.0))
+    }
+
     fn serialize_struct(self, _: &'static str, _: usize) -> Result<Inside<'p>, fmt::Error> {
         Ok(Inside::new(self.0))
     }
@@ -163,6 +166,19 @@ impl SerializeSeq for Inside<'_> {
 
     fn end(self) -> Result<Lookup, fmt::Error> {
         Ok(self.found)
+    }
+}
+
+impl SerializeTuple for Inside<'_> {
+    type Ok = Lookup;
+    type Error = fmt::Error;
+
+    fn serialize_element<T: Serialize + ?Sized>(&mut self, value: &T) -> Result<(), fmt::Error> {
+        SerializeSeq::serialize_element(self, value)
+    }
+
+    fn end(self) -> Result<Lookup, fmt::Error> {
+        SerializeSeq::end(self)
     }
 }
 

@@ -19,7 +19,8 @@ fn request(profile: &Value, preload: &Value) -> Value {
     })
 }
 
-fn families() -> Vec<Value> {
+/// A profile of each family with its examples, a table and a sum.
+pub fn families() -> Vec<Value> {
     let radii: Vec<f64> = (0..=100).map(|index| 1e-5 * f64::from(index)).collect();
     let heights: Vec<f64> = radii.iter().map(|r| r * r / 0.02).collect();
     let of_family = |family: &&Family| {

@@ -6,7 +6,7 @@ use stickslip_compute::simulation::Sweep;
 use stickslip_compute::{Flag, Refusal};
 use stickslip_wire::{PrepareAnew, SweepRequest, read};
 
-use crate::json::{ball, with};
+use crate::json::{ball, changed, cylinder_with_bulk, known_by_load_curves, with};
 use crate::{Reply, assert_refused, good, post, problem, refusal};
 
 /// The table of a sweep, or its refusal.
@@ -207,6 +207,64 @@ fn a_sweep_equals_its_points_one_by_one_bit_for_bit() {
 }
 
 /// A profile that no axis changes is made once; a load curve is made anew for other bodies.
+/// The pointers to all numbers of an object of a reply, and to `null` in place of one.
+fn numbers_in(reply: &Value, part: &str) -> Vec<String> {
+    let members = reply.pointer(part).unwrap().as_object().unwrap().iter();
+    let mut found = Vec::new();
+    for (name, value) in members.filter(|(name, _)| *name != "compute_time") {
+        match value {
+            Value::Number(_) | Value::Null => found.push(format!("{part}/{name}")),
+            Value::Array(items) => found.extend((0..items.len()).map(|index| format!("{part}/{name}/{index}"))),
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn every_number_that_only_some_contacts_have_can_be_an_output() {
+    let body = json!({"youngs_modulus": 1.2e11, "poisson_ratio": 0.34, "resistivity": 1e-7, "conductivity": 390.0});
+    let conducting = with(ball(), "/material", json!({"bodies": [body, body]}));
+    let bodies = json!({"bodies": [{"youngs_modulus": 2.1e11, "poisson_ratio": 0.3}, "rigid"]});
+    let of = |members: Value| changed(with(ball(), "/material", bodies.clone()), &members);
+    let line = json!({"path": {"displacement": [1e-8, -1e-8]}});
+    let turned = json!({"path": {"moves": [{"displacement": [1e-8, 0.0]}, {"displacement": [0.0, 1e-8]}]}});
+    for (contact, rest, known) in [
+        (conducting.clone(), line.clone(), "/steps/0/thermal_conductance"),
+        (conducting, turned, "/steps/0/electrical_conductance"),
+        (
+            of(json!({"adhesion": {"work": 0.1}, "friction": 0.0, "shear_strength": 1e6})),
+            line.clone(),
+            "/steps/0/surface_energy",
+        ),
+        (
+            of(json!({"prony": [{"ratio": 0.5, "time": 1.0}]})),
+            json!({"path": {"moves": [{"duration": 2.0}]}}),
+            "/steps/0/viscous_work",
+        ),
+        (of(json!({"profile": known_by_load_curves()[1].0})), line.clone(), "/contact/gross_slip_torque"),
+        (of(json!({"profile": known_by_load_curves()[2].0})), line.clone(), "/contact/semi_axes/1"),
+        (cylinder_with_bulk(), line, "/steps/0/stick_centre"),
+    ] {
+        let base = changed(json!({"contact": contact}), &rest);
+        let reply = good(post("/simulate", &base));
+        let parts = ["/contact", "/steps/0", "/accuracy"];
+        let outputs: Vec<String> = parts.iter().flat_map(|part| numbers_in(&reply, part)).collect();
+        assert!(outputs.iter().any(|output| output == known), "{known}: {outputs:?}");
+        let preload = reply["contact"]["normal_force"].clone();
+        let base = with(base, "/contact/preload", json!({"normal_force": preload}));
+        let reply = good(post("/simulate", &base));
+        for outputs in outputs.chunks(16) {
+            let axes = axis("/contact/preload/normal_force", "values", json!([preload]));
+            let table = good(post("/sweep", &json!({"base": base, "axes": axes, "outputs": outputs})));
+            for output in outputs {
+                let [swept, simulated] = [&table["columns"][output][0], reply.pointer(output).unwrap()];
+                assert_eq!(swept.as_f64(), simulated.as_f64(), "{output}");
+            }
+        }
+    }
+}
+
 #[test]
 fn points_that_share_a_profile_equal_those_that_do_not() {
     let indentation: Vec<f64> = (0..=20).map(|index| 2e-7 * f64::from(index)).collect();

@@ -3,6 +3,7 @@
 use super::Sweep;
 use super::shared::{self, Shared};
 use crate::prelude::*;
+use crate::simulation::stated_accuracy::coupling_bound;
 use stickslip_mechanics::profile::LineContact;
 use stickslip_wire::check::{Faults, JsonPath};
 use stickslip_wire::json_value::{Pointer, index};
@@ -143,12 +144,22 @@ fn first_peak(output: &Pointer) -> Pointer {
     }
 }
 
-/// A reply with a zero or none for each number that the simulation will compute, and one peak in place of however many
-/// there will be.
+/// A reply with a number or none for each number that the simulation will compute, and one peak in place of however
+/// many there will be. What only some contacts have, such as a conductance, is that of the contact at its preload.
 fn reply_template(simulation: &Simulation) -> SimulationReply {
     let moves = simulation.plan.length();
+    let pressed = Contact::new(simulation.setup.clone()).ok();
+    let start: State = pressed.as_ref().map(Contact::state).map(Into::into).unwrap_or_default();
+    let mut contact: ContactSummary = pressed.as_ref().map(Contact::summary).map(Into::into).unwrap_or_default();
+    let by_curve = matches!(*simulation.setup.profile, Profile::LoadCurve(_));
+    contact.gross_slip_torque = (simulation.plan.twists() || by_curve).then_some(0.0);
+    let (count, steps) = pressed.as_ref().and_then(Contact::count_and_steps).unzip();
+    let coupling_bound = pressed.as_ref().and_then(coupling_bound);
+    let accuracy = Accuracy { coupling_bound, count, steps, ..Accuracy::default() };
     if let Plan::Plane(plane) = &simulation.plan {
-        return SimulationReply::Plane(planar_template(simulation, plane, moves));
+        let template = planar_template(simulation, plane, &start);
+        let accuracy = Accuracy { coupling_bound, ..template.accuracy };
+        return SimulationReply::Plane(PlanarReply { contact, accuracy, ..template });
     }
     let line = simulation.setup.profile.line();
     let along = |along_line: bool| (along_line == line.is_some()).then_some(0.0);
@@ -158,9 +169,8 @@ fn reply_template(simulation: &Simulation) -> SimulationReply {
     let state = |twisted: bool| {
         let of = |present: bool| present.then_some(0.0);
         let (displacement, twist) = (of(!twisted), of(twisted));
-        State { displacement, force: displacement, twist, torque: twist, stick_centre, ..State::default() }
+        State { displacement, force: displacement, twist, torque: twist, stick_centre, ..start }
     };
-    let contact = ContactSummary { gross_slip_torque: simulation.plan.twists().then_some(0.0), ..Default::default() };
     let last = twisted(&simulation.plan).last();
     let protocol = || Protocol { displacement: vec![0.0; moves], cutoff_radius: 0.0 };
     SimulationReply::Line(SimulateReply {
@@ -172,7 +182,7 @@ fn reply_template(simulation: &Simulation) -> SimulationReply {
         stress: simulation.stress.as_ref().map(|sampling| stress_template(sampling, line.is_some())),
         residual: simulation.residual.then(residual),
         protocol: matches!(simulation.plan, Plan::EqualPeaks(_)).then(protocol),
-        accuracy: Accuracy { work_error: (simulation.plan.curved() > 0).then_some(0.0), ..Accuracy::default() },
+        accuracy: Accuracy { work_error: (simulation.plan.curved() > 0).then_some(0.0), ..accuracy },
         // The stress below the surface is no output of a sweep.
         ..SimulateReply::default()
     })
@@ -192,7 +202,7 @@ fn twisted(plan: &Plan) -> impl Iterator<Item = bool> {
     })
 }
 
-fn planar_template(simulation: &Simulation, plane: &PlanarPlan, moves: usize) -> PlanarReply {
+fn planar_template(simulation: &Simulation, plane: &PlanarPlan, start: &State) -> PlanarReply {
     let stress = |sampling: &StressRequest| {
         let length = sampling.length();
         let column = |field: Field| sampling.wants(field).then(|| vec![None; length]);
@@ -207,8 +217,14 @@ fn planar_template(simulation: &Simulation, plane: &PlanarPlan, moves: usize) ->
         }
     };
     let (by_rings, turn) = (plane.line.is_none(), plane.steps_per_turn());
+    let moves = simulation.plan.length();
+    let state = PlanarState {
+        electrical_conductance: start.electrical_conductance,
+        thermal_conductance: start.thermal_conductance,
+        ..PlanarState::default()
+    };
     PlanarReply {
-        steps: vec![PlanarState::default(); if simulation.steps == Steps::All { moves } else { 1 }],
+        steps: vec![state; if simulation.steps == Steps::All { moves } else { 1 }],
         stress: simulation.stress.as_ref().map(stress),
         turn_losses: turn.map(|turn| vec![0.0; moves / turn]),
         accuracy: Accuracy {
