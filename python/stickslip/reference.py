@@ -424,7 +424,9 @@ def springs(count: int = 10_000) -> Code:
 
 def dragged(inputs: Document, steps: int = 1000) -> Document:
     """A spring with a cap on an ellipse, in so many steps for each turn: the force is drawn back along itself."""
-    limit, stiffness = inputs["friction"] * inputs["normal_force"], 2 * inputs["g_star"] * inputs["profile"]["radius"]
+    load, limit = inputs["normal_force"], inputs["friction"] * inputs["normal_force"]
+    ball = (3 * load * inputs.get("radius", 0) / (4 * inputs["e_star"])) ** (1 / 3)
+    stiffness = 2 * inputs["g_star"] * inputs.get("profile", {}).get("radius", ball)
     force, forces, work = 0j, list[complex](), 0.0
     turn = np.exp(2j * np.pi * np.arange(steps + 1) / steps)
     for chord in np.tile(np.diff(inputs["radii"][0] * turn.real + 1j * inputs["radii"][1] * turn.imag), 4):

@@ -1,6 +1,4 @@
-"""Motion in the plane: a ball on a circle and a punch on an ellipse.
-
-The steady turn of a ball is seen from axes that turn with it.
+"""A ball that is moved in a circle: the steady turn, seen from axes that turn with it.
 
 In units of the contact radius, G* and the displacement of gross slip. From turning axes the steady turn is at rest: the
 ball is at U on the real axis, tractions tau and displacements u of the surface are complex and depend on r alone. Inside
@@ -14,7 +12,6 @@ log(t - c), each eight times as wide as the one before, from (t - c) of 1e-27 on
 """
 
 import numpy as np
-from mpmath import cos, mp, mpf, pi, sin
 from numpy.polynomial.legendre import leggauss, legvander
 
 from found.common import out, problem
@@ -227,84 +224,5 @@ def circular_motion():
             "1e-2": "each ring slips in a direction of its own; springs that slip each for itself lose 24 % less",
             "1e-4": "some tens of rings, and steps that are extrapolated",
             "1e-8": "the edge of the stick zone is resolved, beside which the stress turns as (r - c)^0.08",
-        },
-    )
-
-
-def dragged(a, b, count):
-    """Directions of the force after a quarter and half a steady turn, and how far the punch slides: `count` chords.
-
-    On a chord the tangent of half the angle between force and motion falls by exp(-length): a tractrix.
-    """
-    places = np.exp(2j * np.pi * np.arange(count + 1) / count)
-    places = a * places.real + 1j * b * places.imag
-    angle = 0.0
-    for _ in range(4):
-        found, slid = [], 0.0
-        for chord in np.diff(places):
-            half = np.tan((angle - np.angle(chord)) / 2)
-            before, after = 2 * np.arctan(half), 2 * np.arctan(half * np.exp(-abs(chord)))
-            slid += np.log(np.sin(before) / np.sin(after))
-            angle = np.angle(chord) + after
-            found.append(np.exp(1j * angle))
-    return np.array([found[count // 4 - 1], found[count // 2 - 1], slid])
-
-
-def by_chords(a, b):
-    """The same, extrapolated: chords err by even powers of their length."""
-    table = [dragged(a, b, 256 * 2**power) for power in range(5)]
-    for order in range(1, 5):
-        table = [fine + (fine - coarse) / (4**order - 1) for coarse, fine in zip(table, table[1:])]
-    return table[0]
-
-
-def elliptic_motion():
-    """The document: whole ellipses under a punch, which slides as a whole and is a body on a spring."""
-    inputs = {**BALL, "normal_force": 10.0, "radii": [4e-7, 2.5e-7]}
-    inputs["profile"] = {"type": "flat_punch", "radius": 1e-4}
-    del inputs["radius"]
-    limit = mpf(inputs["friction"]) * mpf(inputs["normal_force"])
-    unit = limit / (2 * mpf(inputs["g_star"]) * mpf(inputs["profile"]["radius"]))
-    a, b = (mpf(radius) / unit for radius in inputs["radii"])
-    quarter, half, chords = by_chords(float(a), float(b))
-    with mp.workdps(25):
-        # Over half a turn, from the opposite of where it ends: what the motion has across the force turns it.
-        angle = mp.odefun(
-            lambda t, y: [a * sin(t) * sin(y[0]) + b * cos(t) * cos(y[0])], 0, [mpf(float(np.angle(-half)))]
-        )
-        rates = []
-        for step in range(64):
-            t = pi * step / 64
-            rates.append(b * cos(t) * sin(angle(t)[0]) - a * sin(t) * cos(angle(t)[0]))
-        # It slides all the way, and the trapezoidal rule has all digits of what is periodic.
-        assert min(rates) > 0
-        slid, forces = 2 * pi * mp.fsum(rates) / 64, [mp.expj(angle(t)[0]) for t in (pi / 2, pi)]
-    for one, other in zip([*forces, slid], [quarter, half, chords.real]):
-        assert abs(complex(one) - other) < 1e-12, (one, other)
-    outputs = {
-        "force_x": out("N", *(limit * force.real for force in forces), scale=limit),
-        "force_y": out("N", *(limit * force.imag for force in forces), scale=limit),
-        "turn_work": out("J", limit * unit * slid),
-    }
-    return problem(
-        "elliptic-motion",
-        "A flat punch that is moved round an ellipse",
-        BALL_TEXT.replace("A ball of radius R (`radius`)", "A flat round punch (`profile`)").replace(
-            "slip is along x", "the shear stress of a place that slips is along its slip"
-        )
-        + "Displacements along x act along x alone (Poisson's ratios as if zero). Under constant F_N the punch is moved"
-        " round the ellipse x = U_x cos t, y = U_y sin t with U_x and U_y of `radii`, until turns no longer differ."
-        " Asked: the force a quarter and half a turn after x = U_x, along x and y, and the friction work of a turn.",
-        "Pressure and shear stress of a punch have one form, so that all of it slips at once: it is a body on a spring"
-        " of the stiffness 2 G* times its radius, dragged by the force mu F_N (a tractrix). Its differential"
-        " equation by Taylor's series in 25 digits, from a value of 13 digits on; the work is mu F_N times the length"
-        " that it slides.",
-        "The closed tractrix of straight chords, 256 to 4096 of them, extrapolated four times: to 1e-12.",
-        ["Johnson 1985, 10.1017/CBO9781139171731"],
-        [{"name": "punch", "inputs": inputs, "outputs": outputs}],
-        {
-            "1e-2": "a spring with a friction cap, drawn back along its force, in some hundred steps for each turn",
-            "1e-4": "the same in some ten thousand steps, or steps of second order",
-            "1e-8": "steps that are extrapolated, or of high order",
         },
     )

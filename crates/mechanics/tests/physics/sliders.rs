@@ -128,6 +128,30 @@ fn a_path_of_a_thousand_turns_stays_within_its_error_and_one_reversal_within_twi
     }
 }
 
+#[test]
+fn a_path_built_against_sliders_reaches_the_bound_of_its_error() {
+    // Branches that turn in the middles of ever smaller chords err by twice the chord; those back end at knots.
+    let contact = PLAIN.contact();
+    let sliders = of(&contact, Wanted::Count(10));
+    let force = |u: f64| 1.0 - (1.0 - u).powf(1.5);
+    let knots = sliders.displacement.iter().map(|knot| knot / PLAIN.full_slip());
+    let ends: Vec<f64> = std::iter::once(0.0).chain(knots).collect();
+    let (mut path, mut at) = (vec![1.0], 1.0);
+    for pair in ends.windows(2).rev() {
+        let (from, to) = (pair[0], pair[1]);
+        let middle = 1.0 - ((force(to) - force(from)) / (to - from) / 1.5).powi(2);
+        path.extend([at - 2.0 * middle, at - 2.0 * middle + 2.0 * from]);
+        at += 2.0 * (from - middle);
+    }
+    path.pop();
+    let path: Vec<f64> = path.iter().map(|u| u * PLAIN.full_slip()).collect();
+    let mut exact = contact.virgin();
+    path.iter().for_each(|to| exact.apply(&displace(*to)).map(drop).unwrap());
+    let error = (followed(&sliders, path.into_iter()).last().unwrap() - exact.force()).abs();
+    let error = error / contact.summary().gross_slip_force;
+    assert!((error / sliders.path_error() - 1.0).abs() < 1e-9, "{error:e} of {:e}", sliders.path_error());
+}
+
 /// Uniform numbers from 0 to 1 by a linear congruence, the same in every run.
 fn fastrand_like(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
