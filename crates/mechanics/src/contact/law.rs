@@ -2,7 +2,7 @@
 //! <= tau_0 + mu p (Bowden & Tabor), and adhesion.
 //!
 //! At a constant load the tangential problem is that of a contact with mu = 1 and E* = G*, pressed into the limit of
-//! friction itself ([`LimitShape`]). That contact is kept beside the one under the normal load, which knows nothing of
+//! slip itself ([`LimitShape`]). That contact is kept beside the one under the normal load, which knows nothing of
 //! tangential moves then, and whatever is tangential is asked of it: moves, forces, energies, shear stress, slip.
 //!
 //! Under a load that grows after partial slip most of the room comes at the old edge, slip begins again inside the
@@ -18,10 +18,11 @@ use super::state::{Move, Normal, State};
 use super::twist::Twist;
 use super::viscoelastic::LEAST_TOLERANCE;
 use crate::cells::shape::Reach;
+use crate::elasticity::Elasticity;
 use crate::indenter::Indenter;
 use crate::numerics::double_double::DoubleDouble;
 use crate::path::curved_path::{NormalPath, TangentialPath};
-use crate::profile::{LimitShape, Profile};
+use crate::profile::{LimitShape, Profile, Strength};
 use crate::range;
 use crate::range::Quantity;
 use crate::range::error::Error;
@@ -164,32 +165,42 @@ impl Contact {
         let tangential = cells.map(|cells| {
             let (scale, root) = (self.scale(), 2.0 * strength / self.elasticity.g_star());
             let upright = self.indenter.is_upright(&edge);
-            let limit = LimitShape::new(self.indenter.shared_profile(), cells, (edge.square, upright), (scale, root));
+            let limit = Strength { cells, edge: edge.square, upright, scale, root };
+            let limit = limit.limit(&self.indenter.shared_profile());
             let step = if upright { (edge.level - cells.top.level) * scale } else { DoubleDouble::ZERO };
-            let depth = limit.depth() + step;
-            let (indenter, elasticity) = (Indenter::new(Profile::Limit(limit)), self.elasticity.tangential());
-            let history = SlipHistory::new(&Coulomb(&indenter), depth).at_position(self.displacement);
-            let normal_force = normal::force(&indenter, &elasticity, history.edge());
-            Box::new(Contact {
-                indenter: Arc::new(indenter),
-                elasticity,
-                friction: 1.0,
-                history,
-                displacement: self.displacement,
-                normal_force,
-                dissipated: self.dissipated,
-                preload: (depth, normal_force),
-                indentation_error: scale * self.indentation_error,
-                path_error: 0.0,
-                path_kernel: 0.0,
-                work_error: 0.0,
-                inverse_scale: DoubleDouble::from(1.0),
-                law: None,
-                viscoelastic: None,
-            })
+            let mut contact = self.pressed_into(limit, step, self.elasticity.tangential());
+            contact.history = contact.history.at_position(self.displacement);
+            contact.displacement = self.displacement;
+            contact.indentation_error = scale * self.indentation_error;
+            Box::new(contact)
         });
         if let Some(law) = self.law.as_mut() {
             law.tangential = tangential;
+        }
+    }
+
+    /// The virgin contact with mu = 1 that is pressed into the limit of this one, and by `step` beyond a vertical edge.
+    pub(super) fn pressed_into(&self, limit: LimitShape, step: DoubleDouble, elasticity: Elasticity) -> Contact {
+        let depth = limit.depth() + step;
+        let indenter = Indenter::new(Profile::Limit(limit));
+        let history = SlipHistory::new(&Coulomb(&indenter), depth);
+        let normal_force = normal::force(&indenter, &elasticity, history.edge());
+        Contact {
+            indenter: Arc::new(indenter),
+            elasticity,
+            friction: 1.0,
+            history,
+            displacement: DoubleDouble::ZERO,
+            normal_force,
+            dissipated: self.dissipated,
+            preload: (depth, normal_force),
+            indentation_error: 0.0,
+            path_error: 0.0,
+            path_kernel: 0.0,
+            work_error: 0.0,
+            inverse_scale: DoubleDouble::from(1.0),
+            law: None,
+            viscoelastic: None,
         }
     }
 

@@ -1,7 +1,7 @@
 //! A contact that is twisted about the axis through its middle.
 //!
 //! At a constant load the twist is a contact of its own, pressed into the limit of friction under twist
-//! ([`TwistLimit`](crate::profile::TwistLimit)): its displacement is the angle, rad, and its tangential force the
+//! ([`LimitShape`](crate::profile::LimitShape)): its displacement is the angle, rad, and its tangential force the
 //! torque, N m. It is made by the first twist, kept beside the contact, and gone when that lifts off. Twist couples
 //! with nothing, so that this is exact for any pair of isotropic bodies. Under a load that changes springs step it from
 //! then on ([`TwistSprings`]).
@@ -10,7 +10,6 @@ use std::sync::Arc;
 
 use super::Contact;
 use super::law::Interface;
-use super::normal;
 use super::state::{Move, Regime, State, Tangential};
 use crate::cells::shape::Reach;
 use crate::elasticity::Elasticity;
@@ -23,7 +22,6 @@ use crate::range;
 use crate::range::Quantity;
 use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
-use crate::slip_history::limit::Coulomb;
 use crate::springs::twist::{TwistLaw, TwistPath, TwistSprings, gross_slip_torque};
 
 /// The twist of a contact.
@@ -155,30 +153,10 @@ impl Contact {
             return Err(Error::TooManyCells);
         }
         let [hoop, even] = twisted.limits(&self.indenter.shared_profile());
-        let depth = even.depth() + DoubleDouble::from(twisted.at_edge());
-        let indenter = Indenter::new(Profile::Twist(even));
         // Twice this is the stiffness over xi: 16 G x^2 dx = 16 G a^2 dxi.
         let elasticity = Elasticity::of_springs(8.0 * shear_modulus * edge.square.value());
-        let history = SlipHistory::new(&Coulomb(&indenter), depth);
-        let normal_force = normal::force(&indenter, &elasticity, history.edge());
-        let contact = Contact {
-            indenter: Arc::new(indenter),
-            elasticity,
-            friction: 1.0,
-            history,
-            displacement: DoubleDouble::ZERO,
-            normal_force,
-            dissipated: self.dissipated,
-            preload: (depth, normal_force),
-            indentation_error: 0.0,
-            path_error: 0.0,
-            path_kernel: 0.0,
-            work_error: 0.0,
-            inverse_scale: DoubleDouble::from(1.0),
-            law: None,
-            viscoelastic: None,
-        };
-        Ok(Twist { contact, hoop: Arc::new(Indenter::new(Profile::Twist(hoop))), shear_modulus, springs: None })
+        let contact = self.pressed_into(even, DoubleDouble::from(twisted.at_edge()), elasticity);
+        Ok(Twist { contact, hoop: Arc::new(Indenter::new(Profile::Limit(hoop))), shear_modulus, springs: None })
     }
 
     /// What its springs of twist are made of.

@@ -1,131 +1,97 @@
-//! The limit of friction at a constant load as a shape: what a contact is pressed into sideways.
+//! The limit of slip at a constant load as a shape: what a contact is pressed into along the surface.
 //!
-//! With |tau| <= tau_0 + mu p a spring at x slips where its displacement reaches B(x) = m (d - g(x)) + q sqrt(a^2 -
-//! x^2), m = mu E*/G* and q = 2 tau_0/G* (Bowden & Tabor's law under the Abel transform). B falls from the centre to
-//! the edge. So tangential motion at a constant load is that of a contact with mu = 1 and E* = G*, whose shape is
-//!
-//! g_B(x) = B(0) - B(x) = m g(x) + q (a - sqrt(a^2 - x^2)),
-//!
-//! and whose indentation is B(0): the fall of B is a level, and its cells are what moves, forces, energies and stresses
-//! are made of. The root has a branch point at the edge; each cell is at most half as wide in x^2 as the edge is far
-//! away, down to 1e-15 of the radius, in sqrt(a^2 - x^2).
+//! A spring at x slips where its deflection reaches B(x), which falls from the centre to the edge. So motion along the
+//! surface at a constant load is that of a contact with mu = 1 whose shape is B(0) - B(x), and whose indentation is
+//! B(0): the fall of B is a level, and its cells are what moves, forces, energies and stresses are made of. A law is a
+//! file that makes these cells of those of the profile: [`strength_limit`](super::strength_limit),
+//! [`twist_limit`](super::twist_limit).
 
 use std::sync::Arc;
 
 use super::{InterpolationError, Profile};
+use crate::cells::ring::StressRadius;
 use crate::cells::shape::{End, EndKind, Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
 use crate::cells::{Cell, Cells};
 use crate::numerics::chebyshev::{TWENTY_FOUR, counted};
 use crate::numerics::double_double::DoubleDouble;
 
-/// The width of a cell over the distance of the edge, in squares, by which twenty-four points leave 1e-18: of a series
-/// in squares, and of one in all powers.
-const WIDTH: f64 = 0.5;
-const WIDTH_OF_ALL_POWERS: f64 = 0.25;
-/// The distance from the edge over a^2, in squares, of which one cell is made: an excess of 1e-15 of the limit.
-const LAST: f64 = 1e-30;
 /// The share of the largest term up to which the last terms of a series are left out.
 const NEGLIGIBLE: f64 = 1e-17;
 
-/// The limit of friction of one contact.
+/// The limit of slip of one contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitShape {
     profile: Arc<Profile>,
-    /// m, and q.
+    /// What the limit has of g; zero where its errors are not those of the profile, scaled.
     scale: f64,
-    root: f64,
     end: End,
     kinks: Kinks,
     stages: Stages,
 }
 
-/// Where the shape is not analytic, or a cell of the profile ends.
-struct Stretch<'a> {
-    from: DoubleDouble,
-    kink: f64,
-    powers: Powers,
-    cell: Option<&'a Cell>,
+/// Where a limit is not analytic, or a cell of the profile ends.
+pub(super) struct Stretch<'a> {
+    pub(super) from: DoubleDouble,
+    pub(super) kink: f64,
+    pub(super) powers: Powers,
+    pub(super) cell: Option<&'a Cell>,
+}
+
+impl<'a> Stretch<'a> {
+    /// From where a cell begins, above its kink or above `least`, m.
+    pub(super) fn of(cell: &'a Cell, least: f64) -> Stretch<'a> {
+        Stretch { from: cell.square, kink: cell.kink.max(least), powers: cell.begins_as(), cell: Some(cell) }
+    }
 }
 
 impl LimitShape {
-    /// The limit of a contact whose edge is at the square `edge`, m^2, on a vertical edge of the profile if it is
-    /// `upright`; `cells` are those of the profile.
-    pub(crate) fn new(
-        profile: Arc<Profile>,
-        cells: &Cells,
-        (edge, upright): (DoubleDouble, bool),
-        (scale, root): (f64, f64),
+    /// Of the cells of a limit, which ends at a vertical edge if it is `upright`; `kinks` begin at the centre or a core.
+    pub(super) fn new(
+        (profile, scale): (&Arc<Profile>, f64),
+        cells: Cells,
+        (radius, upright): (f64, bool),
+        kinks: Kinks,
     ) -> LimitShape {
-        let radius = edge.value().sqrt();
-        let mut stretches = vec![Stretch { from: DoubleDouble::ZERO, kink: 0.0, powers: Powers::Odd, cell: None }];
-        for cell in cells.cells.iter().filter(|cell| scale > 0.0 && cell.square < edge) {
-            if stretches.len() == 1 && cell.square == DoubleDouble::ZERO {
-                stretches.clear();
-            }
-            let powers = cell.begins_as();
-            stretches.push(Stretch { from: cell.square, kink: cell.kink, powers, cell: Some(cell) });
-        }
-        let mut made = Vec::new();
-        for (index, stretch) in stretches.iter().enumerate() {
-            let to = stretches.get(index + 1).map_or(edge, |next| next.from);
-            stretch.divide((to, edge), (scale, root), &mut made);
-        }
-        let own = profile.shape().map_or_else(|| Kinks::from([]), Shape::kinks);
-        let mut kinks: Vec<Kink> = own.iter().copied().filter(|kink| scale > 0.0 && kink.at.square < edge).collect();
-        for kink in &mut kinks {
-            kink.powers = kink.powers.and(Powers::Odd);
-        }
-        if kinks.first().is_none_or(|first| first.at.radius > 0.0) {
-            kinks.insert(0, Kink::new(0.0, Powers::Odd));
-        }
         let kind = if upright { EndKind::Edge } else { EndKind::Unknown };
-        let stages = Stages::whole(Cells::new(made, Some(edge)).with_all_digits());
-        LimitShape { profile, scale, root, end: End { radius, kind }, kinks: kinks.into(), stages }
+        let profile = Arc::clone(profile);
+        LimitShape { profile, scale, end: End { radius, kind }, kinks, stages: Stages::whole(cells) }
     }
 
-    /// B(0) - B(a), m, of a contact that ends at no vertical edge.
+    /// B(0) - B(a) of a contact that ends at no vertical edge.
     pub(crate) fn depth(&self) -> DoubleDouble {
         self.stages.everything().map_or(DoubleDouble::ZERO, |cells| cells.top.level)
     }
 
     /// The interpolation error of the profile's table, as it is in the limit.
     pub(super) fn interpolation_error(&self, radius: f64) -> InterpolationError {
+        if self.scale <= 0.0 {
+            return InterpolationError::default();
+        }
         let InterpolationError { load, level, kernel } = self.profile.interpolation_error(radius);
         InterpolationError { load: self.scale * load, level: self.scale * level, kernel: self.scale * kernel }
     }
 
     /// How many times larger the parts of g are than g.
     pub(super) fn cancellation(&self, radius: f64) -> f64 {
-        self.profile.cancellation(radius)
+        if self.scale > 0.0 { self.profile.cancellation(radius) } else { 1.0 }
     }
 }
 
-impl Stretch<'_> {
-    /// Its cells up to the square `to`, m^2.
-    fn divide(&self, (to, edge): (DoubleDouble, DoubleDouble), (scale, root): (f64, f64), made: &mut Vec<Cell>) {
-        let (mut square, mut powers) = (self.from, self.powers);
-        loop {
-            let (whole, left) = ((to - square).value(), (edge - square).value());
-            if whole <= 0.0 {
-                return;
-            }
-            if whole >= left && left <= LAST * edge.value() {
-                // sqrt(a^2 - x^2) falls to zero by a parabola here.
-                made.push(Cell::new(self.kink, square, left.sqrt(), &[2.0 * root], Powers::Odd));
-                return;
-            }
-            let most = if powers == Powers::Odd { WIDTH } else { WIDTH_OF_ALL_POWERS } * left;
-            let width = if whole <= most { whole } else { most.min(0.5 * whole) };
-            made.push(fitted(self.kink, square, width, powers, |t| {
-                let above = square + DoubleDouble::square_of(t);
-                let own = self.cell.map_or(0.0, |cell| cell.slope_over_radius(cell.zeta(above)) * t);
-                scale * own + root * t / (left - t * t).sqrt()
-            }));
-            square = square + DoubleDouble::from(width);
-            powers = Powers::Odd;
-        }
-    }
+/// The kinks of a profile between two squares, m^2, behind one where the limit begins, all at the places to which `to`
+/// leads their squares.
+pub(super) fn kinks(
+    profile: &Profile,
+    [begin, edge]: [DoubleDouble; 2],
+    to: impl Fn(DoubleDouble) -> DoubleDouble,
+) -> Kinks {
+    let at = |square: DoubleDouble| StressRadius { radius: to(square).value().sqrt(), square: to(square) };
+    let own = profile.shape().map_or_else(|| Kinks::from([]), Shape::kinks);
+    let placed = |kink: &Kink| Kink { at: at(kink.at.square), powers: kink.powers.and(Powers::Odd) };
+    let first = own.iter().find(|kink| kink.at.square == begin && begin < edge);
+    let first = first.map_or(Kink { at: at(begin), powers: Powers::Odd }, placed);
+    let inside = own.iter().filter(|kink| kink.at.square > begin && kink.at.square < edge);
+    [first].into_iter().chain(inside.map(placed)).collect()
 }
 
 /// The cell above a square, m^2, that is so wide in squares, of gamma over t.
@@ -149,9 +115,7 @@ impl Shape for LimitShape {
     }
 
     fn level(&self, x: f64) -> f64 {
-        let a = self.end.radius;
-        let own = if self.scale > 0.0 { self.scale * self.profile.level(x) } else { 0.0 };
-        own + self.root * x * x / (a + ((a - x) * (a + x)).max(0.0).sqrt())
+        self.stages.everything().map_or(0.0, |cells| cells.level(x))
     }
 
     fn gamma(&self, base: f64, t: f64) -> f64 {

@@ -18,6 +18,7 @@ mod limit_shape;
 mod line;
 mod load_curve;
 mod open_gaps;
+mod strength_limit;
 mod sum;
 mod tabulated;
 #[cfg(test)]
@@ -31,9 +32,9 @@ pub use families::{Family, Parameter};
 pub use limit_shape::LimitShape;
 pub use line::{LineBulk, LineContact, PadFace, WIDEST};
 pub use load_curve::LoadCurve;
+pub(crate) use strength_limit::Strength;
 pub use sum::Sum;
 pub use tabulated::{InterpolationError, Tabulated};
-pub use twist_limit::TwistLimit;
 pub(crate) use twist_limit::{MOST_CELLS, Twisted, complete};
 
 use crate::cells::Cells;
@@ -84,10 +85,8 @@ macro_rules! families {
             Line(LineContact),
             /// What the pressure of a pad along a line follows from, as a body of revolution.
             PadFace(PadFace),
-            /// The limit of friction of a contact at one load.
+            /// The limit of slip of a contact at one load.
             Limit(LimitShape),
-            /// The limit of friction of a contact under twist, at one load.
-            Twist(TwistLimit),
         }
 
         impl Profile {
@@ -99,7 +98,6 @@ macro_rules! families {
                     Profile::Sum(sum) => Some(sum),
                     Profile::PadFace(face) => Some(face),
                     Profile::Limit(limit) => Some(limit),
-                    Profile::Twist(limit) => Some(limit),
                     Profile::Asperities(_) | Profile::Ellipsoid(_) | Profile::LoadCurve(_) | Profile::Line(_) => None,
                 }
             }

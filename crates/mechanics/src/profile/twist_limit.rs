@@ -18,10 +18,9 @@ use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use super::Profile;
-use super::limit_shape::fitted;
+use super::limit_shape::{LimitShape, Stretch, fitted, kinks};
 use crate::cells::ring::StressRadius;
-use crate::cells::shape::{End, EndKind, Kink, Kinks, Powers, Shape};
-use crate::cells::stages::Stages;
+use crate::cells::shape::Powers;
 use crate::cells::{Cell, Cells};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::TWENTY_POINTS;
@@ -35,15 +34,6 @@ const ROUNDING: f64 = 1e-15;
 /// How many times wider in x^2 a panel of an integral ends than it begins: from a tip on, and above a kink.
 const PANELS: [f64; 2] = [16.0, 4.0];
 
-/// The limit of one contact, over x or over xi.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TwistLimit {
-    profile: Arc<Profile>,
-    end: End,
-    kinks: Kinks,
-    stages: Stages,
-}
-
 /// A contact that is twisted.
 pub(crate) struct Twisted<'a> {
     pub(crate) cells: &'a Cells,
@@ -55,14 +45,6 @@ pub(crate) struct Twisted<'a> {
     pub(crate) unit: f64,
     /// The radius of curvature, m, of a ball, for which the limit has a closed form.
     pub(crate) ball: Option<f64>,
-}
-
-/// Where the limit is not analytic, or a cell of the profile ends.
-struct Stretch<'a> {
-    from: DoubleDouble,
-    kink: f64,
-    powers: Powers,
-    cell: Option<&'a Cell>,
 }
 
 impl Twisted<'_> {
@@ -82,14 +64,11 @@ impl Twisted<'_> {
     }
 
     /// The limit over x, and over xi.
-    pub(crate) fn limits(&self, profile: &Arc<Profile>) -> [TwistLimit; 2] {
+    pub(crate) fn limits(&self, profile: &Arc<Profile>) -> [LimitShape; 2] {
         let core = self.edge * CORE;
         let first = self.cells.cells.iter().rfind(|cell| cell.square <= core);
         let mut stretches = vec![Stretch { from: core, kink: core.value().sqrt(), powers: Powers::Odd, cell: first }];
-        for cell in self.slipping() {
-            let kink = cell.kink.max(core.value().sqrt());
-            stretches.push(Stretch { from: cell.square, kink, powers: cell.begins_as(), cell: Some(cell) });
-        }
+        stretches.extend(self.slipping().map(|cell| Stretch::of(cell, core.value().sqrt())));
         let (mut flat, mut even) = (Vec::new(), Vec::new());
         for (index, stretch) in stretches.iter().enumerate() {
             let to = stretches.get(index + 1).map_or(self.edge, |next| next.from);
@@ -121,16 +100,8 @@ impl Twisted<'_> {
             });
         }
         let even = Cells::new(even, Some(top.square));
-        let kind = if self.step > 0.0 { EndKind::Edge } else { EndKind::Unknown };
         let limit = |cells: Cells, end: f64, place: &dyn Fn(DoubleDouble) -> DoubleDouble| {
-            let at =
-                |square: DoubleDouble| StressRadius { radius: place(square).value().sqrt(), square: place(square) };
-            let own = profile.shape().map_or_else(|| Kinks::from([]), Shape::kinks);
-            let own = own.iter().filter(|kink| kink.at.square > core && kink.at.square < self.edge);
-            let own = own.map(|kink| Kink { at: at(kink.at.square), powers: kink.powers.and(Powers::Odd) });
-            let kinks = [Kink { at: at(core), powers: Powers::Odd }].into_iter().chain(own).collect();
-            let end = End { radius: end, kind };
-            TwistLimit { profile: Arc::clone(profile), end, kinks, stages: Stages::whole(cells) }
+            LimitShape::new((profile, 0.0), cells, (end, self.step > 0.0), kinks(profile, [core, self.edge], place))
         };
         [limit(flat, self.radius(), &|square| square), limit(even, top.radius, &cubed)]
     }
@@ -218,38 +189,5 @@ fn ratio(k: f64) -> f64 {
             return FRAC_PI_2 / (mean + other) * (1.0 - sum) / k;
         }
         (mean, other) = (0.5 * (mean + other), (mean * other).sqrt());
-    }
-}
-
-impl TwistLimit {
-    /// w(core) - w(a), of a contact that ends at no vertical edge.
-    pub(crate) fn depth(&self) -> DoubleDouble {
-        self.stages.everything().map_or(DoubleDouble::ZERO, |cells| cells.top.level)
-    }
-}
-
-impl Shape for TwistLimit {
-    fn kinks(&self) -> Kinks {
-        Arc::clone(&self.kinks)
-    }
-
-    fn level(&self, x: f64) -> f64 {
-        self.stages.everything().map_or(0.0, |cells| cells.level(x))
-    }
-
-    fn gamma(&self, base: f64, t: f64) -> f64 {
-        self.stages.everything().map_or(0.0, |cells| cells.gamma(base, t))
-    }
-
-    fn surface_slope(&self, r: f64) -> f64 {
-        self.profile.surface_slope(r)
-    }
-
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        Some(self.end)
     }
 }
