@@ -24,6 +24,9 @@ use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
 use crate::springs::twist::{TwistLaw, TwistPath, TwistSprings, gross_slip_torque};
 
+/// A contact of a smaller radius, m, carries no twist: the sixth power of the radius of its core is no number.
+const LEAST_RADIUS: f64 = 1e-40;
+
 /// The twist of a contact.
 #[derive(Clone, Debug)]
 pub(crate) struct Twist {
@@ -139,13 +142,20 @@ impl Contact {
         }
         let shear_modulus = self.elasticity.shear_modulus().ok_or(Error::ShearModulusNeeded)?;
         let edge = self.history.edge();
-        let cells = self.indenter.cells(Reach::Radius(edge.radius)).filter(|_| edge.level.value() > 0.0);
+        let cells = self.indenter.cells(Reach::Radius(edge.radius)).filter(|_| self.holds_twist(edge.level.value()));
         let cells = cells.ok_or(Error::NothingSlides)?;
-        let upright = self.indenter.is_upright(edge);
+        let step = if edge.square <= self.indenter.flat().square {
+            // A contact that is no wider than its flat, to the last digit, is pressed in as a punch is.
+            edge.level.value()
+        } else if self.indenter.is_upright(edge) {
+            (edge.level - cells.top.level).value()
+        } else {
+            0.0
+        };
         let twisted = Twisted {
             cells,
             edge: edge.square,
-            step: if upright { (edge.level - cells.top.level).value() } else { 0.0 },
+            step,
             unit: self.friction * self.elasticity.e_star() / (2.0 * std::f64::consts::PI * shear_modulus),
             ball: self.profile().ball().map(|ball| ball.curvature_radius),
         };
@@ -157,6 +167,11 @@ impl Contact {
         let elasticity = Elasticity::of_springs(8.0 * shear_modulus * edge.square.value());
         let contact = self.pressed_into(even, DoubleDouble::from(twisted.at_edge()), elasticity);
         Ok(Twist { contact, hoop: Arc::new(Indenter::new(Profile::Limit(hoop))), shear_modulus, springs: None })
+    }
+
+    /// Whether it touches at this level, m, widely enough to carry a torque.
+    fn holds_twist(&self, level: f64) -> bool {
+        level > 0.0 && self.indenter.radius(level) > LEAST_RADIUS
     }
 
     /// What its springs of twist are made of.
@@ -193,7 +208,7 @@ impl Contact {
             return Ok(());
         }
         let here = self.history.edge().level.value();
-        if here <= 0.0 {
+        if !self.holds_twist(here) {
             return match path {
                 TwistPath::Torque { to: target, .. } if target.abs() > 0.0 => {
                     Err(Error::TorqueExceedsFriction { target, limit: 0.0 })
@@ -239,14 +254,15 @@ impl Contact {
         let [here, end] = [&*self, &after].map(|contact| contact.history.edge().level.value());
         let twist = self.twist();
         let carries = twist.is_some_and(Twist::carries);
-        if end <= 0.0
+        let holds = self.holds_twist(end);
+        if !holds
             && let TwistPath::Torque { to: target, .. } = path
             && target.abs() > 0.0
         {
             return Err(Error::TorqueExceedsFriction { target, limit: 0.0 });
         }
         let turns = matches!(path, TwistPath::Angle { from, to } if from.to_bits() != to.to_bits());
-        if end <= 0.0 && !(carries && turns) {
+        if !(holds || carries && turns) {
             // Whatever way the contact opens, what a twist that stays has stored is lost by slip.
             let stored = if carries { self.state().elastic_energy } else { 0.0 };
             after.dissipated = after.dissipated + DoubleDouble::from(stored);
@@ -285,7 +301,7 @@ impl Contact {
         };
         springs.follow(&law, &level, path, tolerance, keep_going)?;
         after.dissipated = after.dissipated + DoubleDouble::from(springs.work() - before);
-        if end > 0.0 {
+        if holds {
             after.path_error = springs.path_error;
             twist.springs = Some(springs);
             after.law = Some(Box::new(Interface::of_twist(twist)));

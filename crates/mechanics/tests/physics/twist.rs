@@ -249,6 +249,39 @@ fn twist_is_alone_and_ends_when_the_contact_lifts_off() {
     assert!(contact.state().force > 0.0);
 }
 
+/// Widths from that of nothing to that of an atom: a contact is twisted as any other one is, or carries nothing.
+#[test]
+fn a_contact_of_hardly_any_width_is_twisted_or_carries_nothing() {
+    for (name, profile) in shapes() {
+        for power in (-323..=-4).step_by(11) {
+            let level = 10_f64.powi(power);
+            let preload = Preload::Indentation(level);
+            let Ok(contact) = Contact::new(Setup {
+                profile: profile.clone(),
+                elasticity: Elasticity::effective(1.0, 0.8).unwrap().with_shear_modulus(0.5).unwrap(),
+                friction: 0.4,
+                preload,
+            }) else {
+                continue;
+            };
+            let mut twisted = contact.clone();
+            twisted.apply(&by(0.1)).unwrap_or_else(|error| panic!("{name}, {level:e}: {error}"));
+            let mut pressed = twisted.clone();
+            pressed.apply(&to(0.5, 0.1)).unwrap();
+            assert!(pressed.state().torque.unwrap() >= 0.0, "{name}, {level:e}");
+            pressed.apply(&to(level, -0.1)).unwrap();
+            let Some(torque) = twisted.state().torque else {
+                assert!(twisted.apply(&torque(1e-3)).is_err());
+                continue;
+            };
+            let limit = contact.gross_slip_torque().unwrap();
+            // Below the smallest number with all its digits nothing is compared.
+            let digits = limit > 1e-290;
+            assert!(!digits || (torque > 0.0 && torque <= limit * (1.0 + 1e-9)), "{name}, {level:e}: {torque:e}");
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_twisted_is_refused() {
     let setup = |profile| Setup {
