@@ -69,7 +69,8 @@ async fn make(store: &Arc<dyn Store>, turns: usize) -> Uuid {
     let (body, tail) = displacements.split_at(MOVES - TAIL);
     for path in body.chunks(PATH).chain([tail]) {
         let plan = Plan::Displacement(path.to_vec());
-        let advance = Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10, relax: None };
+        let advance =
+            Advance { plan, stress: None, steps: Steps::Last, tolerance: 1e-10, asked_tolerance: None, relax: None };
         sessions.apply(id, advance, None, None).await.expect("a displacement has no limit");
         // The snapshot is kept behind the reply.
         tokio::time::sleep(Duration::from_millis(200)).await;

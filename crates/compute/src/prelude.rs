@@ -14,7 +14,7 @@ pub(crate) use stickslip_wire::{
 pub(crate) use crate::simulation::bytes::{NUMBER, NUMBER_LENGTH, OBJECT, ROW, of_shape};
 pub(crate) use crate::simulation::cost::{RADIUS_COST, Work, on_profile};
 pub(crate) use crate::simulation::{
-    self, Cause, Failure, Solver, Timer, accuracy, bytes, contact, cost, excess_error, needs_stress_field,
-    present_warnings, quantity,
+    self, Cause, Failure, Solver, Timer, accuracy, bytes, contact, cost, excess_error, excess_error_of_springs,
+    needs_stress_field, present_warnings, quantity,
 };
 pub(crate) use crate::{Interrupted, Nanoseconds, Stop};

@@ -120,6 +120,7 @@ impl Document for ObservationsRequest {
             latest = latest.max(instant);
         }
         let plan = Plan::Observations(self.observations);
-        Some(Advance { plan, stress: None, steps: Steps::All, tolerance: DEFAULT_TOLERANCE, relax: None })
+        let tolerance = DEFAULT_TOLERANCE;
+        Some(Advance { plan, stress: None, steps: Steps::All, tolerance, asked_tolerance: None, relax: None })
     }
 }

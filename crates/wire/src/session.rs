@@ -250,6 +250,8 @@ pub struct Advance {
     pub steps: Steps,
     /// The tolerance of results that are not exact.
     pub tolerance: f64,
+    /// The tolerance that the request names, to which the stated error of springs is held.
+    pub asked_tolerance: Option<f64>,
     /// The protocol that finds the moves, if there is one; `plan` is then empty.
     pub relax: Option<Relaxation>,
 }
@@ -258,7 +260,8 @@ impl From<Relaxation> for Advance {
     fn from(relaxation: Relaxation) -> Advance {
         let steps = relaxation.steps.unwrap_or(Steps::Last);
         let plan = Plan::Displacement(Vec::new());
-        Advance { plan, stress: None, steps, tolerance: DEFAULT_TOLERANCE, relax: Some(relaxation) }
+        let tolerance = DEFAULT_TOLERANCE;
+        Advance { plan, stress: None, steps, tolerance, asked_tolerance: None, relax: Some(relaxation) }
     }
 }
 
@@ -287,8 +290,14 @@ impl Document for MoveRequest {
         step.check(JsonPath::Root, faults);
         let MoveRequest { stress, tolerance, .. } = self;
         let stress = stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
-        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        Some(Advance { plan: Plan::Single(step), stress, steps: Steps::Last, tolerance, relax: None })
+        Some(Advance {
+            plan: Plan::Single(step),
+            stress,
+            steps: Steps::Last,
+            tolerance: tolerance.unwrap_or(DEFAULT_TOLERANCE),
+            asked_tolerance: tolerance,
+            relax: None,
+        })
     }
 }
 
@@ -325,8 +334,9 @@ impl Document for PathRequest {
     fn checked(self, _: &dyn Prepare, faults: &mut Faults) -> Option<Self::Checked> {
         let plan = self.path.check(JsonPath::Root.member("path"), faults);
         let stress = self.stress.and_then(|stress| stress.checked(JsonPath::Root.member("stress"), faults));
-        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, relax: None })
+        let asked_tolerance = self.tolerance;
+        let tolerance = asked_tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        plan.map(|plan| Advance { plan, stress, steps: self.steps, tolerance, asked_tolerance, relax: None })
     }
 }
 

@@ -129,6 +129,8 @@ pub struct Simulation {
     pub solver: Option<Solver>,
     /// The tolerance of results that are not exact.
     pub tolerance: f64,
+    /// The tolerance that the request names, to which the stated error of springs is held.
+    pub asked_tolerance: Option<f64>,
 }
 
 impl Document for SimulateRequest {
@@ -155,7 +157,8 @@ impl Document for SimulateRequest {
         for (name, _) in needing.into_iter().filter(|(_, asked)| *asked) {
             faults.needs_stress_field(setup.as_ref(), JsonPath::Root.member(name));
         }
-        let mut tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        let asked_tolerance = self.tolerance;
+        let mut tolerance = asked_tolerance.unwrap_or(DEFAULT_TOLERANCE);
         let memory = setup.as_ref().is_some_and(|setup| setup.friction.memory.is_some());
         let law = match (&plan, &self.solver) {
             (Some(Plan::Plane(_)), _) | (_, Some(Solver::Rings(_))) => Some("motion in the plane"),
@@ -212,6 +215,7 @@ impl Document for SimulateRequest {
             steps,
             solver,
             tolerance,
+            asked_tolerance,
         };
         setup.zip(plan).map(simulation)
     }

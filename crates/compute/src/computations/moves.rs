@@ -71,7 +71,8 @@ pub fn make_moves(
     let mut accuracy = accuracy(contact, timer, reason_for(contact, REASON));
     // Gross slip erases the error of a curved path, but not that of the states before it.
     accuracy.force_error += path_error.max(contact.path_error()) - contact.path_error();
-    let excess = excess_error(error, contact.tolerance(tolerance), advance.plan.curved());
+    let of_springs = excess_error_of_springs(contact, accuracy.force_error, advance.asked_tolerance);
+    let excess = excess_error(error, contact.tolerance(tolerance), advance.plan.curved()).or(of_springs);
     let mut warnings = new_warnings(contact, before, largest, excess);
     warnings.extend(far.warning().into_iter().chain(annulus_warning(beyond, contact)));
     Ok(Moved { stress, protocol, relaxed, accuracy, warnings, followed_in })

@@ -34,8 +34,8 @@ pub use sweep::{Sweep, SweepResult, Worker};
 pub use trace::{Point, trace, trace_simulation};
 pub use trace_in_plane::trace_in_plane;
 pub use warnings::{
-    FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, annulus_warning, bulk_warning, excess_error, new_warnings, present_warnings,
-    warnings_at,
+    FarMove, HUGE_TABLE_RADIUS, MAX_SLOPE, annulus_warning, bulk_warning, excess_error, excess_error_of_springs,
+    new_warnings, present_warnings, warnings_at,
 };
 
 use std::time::Duration;

@@ -123,7 +123,8 @@ pub(super) fn run<S: Solver>(
     accuracy.work_error = (by_curves && most_work > 0.0).then(|| solver.exact().work_error() / most_work);
     // A table, which may have noise, has no vertical edge.
     let indentation = summary.indentation.max(solver.exact().indenter().level_at_edge(largest));
-    let excess = excess_error(path_error, solver.exact().tolerance(simulation.tolerance), curved);
+    let of_springs = excess_error_of_springs(solver.exact(), accuracy.force_error, simulation.asked_tolerance);
+    let excess = excess_error(path_error, solver.exact().tolerance(simulation.tolerance), curved).or(of_springs);
     Ok(SimulateReply {
         contact: summary.into(),
         steps,

@@ -123,6 +123,12 @@ pub fn excess_error(error: f64, tolerance: f64, curved: usize) -> Option<f64> {
     (error > tolerance * curved.max(1) as f64 + 1e-13).then_some(error)
 }
 
+/// The stated error of the springs that step a contact, if it is beyond the tolerance that the request names: the
+/// number of springs is not chosen by it.
+pub fn excess_error_of_springs(contact: &Contact, error: f64, asked: Option<f64>) -> Option<f64> {
+    asked.filter(|tolerance| contact.count_and_steps().is_some() && error > *tolerance).map(|_| error)
+}
+
 /// The assumption of a contact that is known by its load curve alone: the code of its warning, and a sentence.
 pub(super) fn assumption(profile: &Profile) -> Option<(&'static str, &'static str)> {
     match profile {
@@ -247,9 +253,10 @@ pub fn warnings_at(
         warn(code, message.to_owned());
     }
     if let Some(error) = excess_error {
+        let what = if contact.is_twisted() { "torque" } else { "force" };
         warn(
             "tolerance_not_met",
-            format!("the force may be off by {error:.1e} of mu F_N, more than the tolerance asked for"),
+            format!("the {what} may be off by {error:.1e} of that of gross slip, more than the tolerance asked for"),
         );
     }
     warnings

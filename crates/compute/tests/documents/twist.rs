@@ -222,3 +222,24 @@ fn the_error_of_the_friction_work_is_stated_of_curves_and_not_of_springs() {
     let straight = of_path(json!([{"displacement": 0.3}, {"normal_force": 2.5}]));
     assert_eq!(straight["accuracy"].get("work_error"), None);
 }
+
+/// The number of springs is not chosen by the tolerance: an error beyond one that the request names is said.
+#[test]
+fn springs_that_do_not_meet_the_tolerance_of_the_request_say_so() {
+    let path =
+        json!({"moves": [{"twist": 0.4}, {"twist": -0.2, "indentation": 0.8}, {"twist": 0.3, "indentation": 1.0}]});
+    let warned = |asked: Value| {
+        let reply = good(post("/simulate", &changed(of(&unit_ball(), &json!({"path": path})), &asked)));
+        let error = number(&reply["accuracy"]["force_error"]);
+        let message = reply["warnings"].as_array().unwrap().iter().find(|one| one["code"] == "tolerance_not_met");
+        (error, message.map(|one| one["message"].as_str().unwrap().to_owned()))
+    };
+    let (error, plain) = warned(json!({}));
+    assert!(error > 1e-8 && plain.is_none(), "{error:e} {plain:?}");
+    assert_eq!(warned(json!({"tolerance": 2.0 * error})).1, None);
+    let (_, told) = warned(json!({"tolerance": 0.5 * error}));
+    assert!(told.is_some_and(|message| message.starts_with("the torque may be off by")));
+    // At a constant load no springs step, and nothing is left out.
+    let still = json!({"path": {"twist": [0.4, -0.2]}, "tolerance": 1e-14});
+    assert!(!good(post("/simulate", &of(&unit_ball(), &still)))["warnings"].to_string().contains("tolerance_not_met"));
+}
