@@ -97,6 +97,17 @@ async fn a_twisted_contact_is_stored_replayed_listed_and_drawn() {
     let stress = good(replayed.get(&format!("{place}/stress?points=5&fields=pressure,hoop")).await).await;
     assert!(number(&stress["hoop"][1]) != 0.0, "{stress}");
 
+    // Its steady cycles are those of its definition.
+    let cycle = good(replayed.get(&format!("{place}/cycle?twist=0.1,0.2&harmonics=2")).await).await;
+    let same = json!({"contact": body, "drive": {"twist": [0.1, 0.2]}, "harmonics": 2});
+    assert_eq!(cycle["cycles"], good(cached.post("/cycle", &same).await).await["cycles"]);
+    for (query, pointer) in
+        [("twist=0.1&torque=0.01", "/torque"), ("torque=0.01&points=5", "/points"), ("", "/displacement")]
+    {
+        let refused = problem(replayed.get(&format!("{place}/cycle?{query}")).await).await;
+        assert_eq!(refused.errors[0].pointer, pointer, "{refused:?}");
+    }
+
     good(cached.post(&moves, &json!({"indentation": -0.1})).await).await;
     good(cached.post(&moves, &json!({"indentation": 0.5})).await).await;
     good(cached.post(&moves, &json!({"displacement": 0.1})).await).await;

@@ -12,16 +12,21 @@ use crate::api::query_parameters::{number, numbers};
 parameters! {
     pub struct CycleQuery {
         /// Amplitudes of the displacement, m, separated by commas or given one by one: of the indenter or, with
-        /// `machine_stiffness`, of the machine. Give this or `force`.
+        /// `machine_stiffness`, of the machine. Give this, `force`, `twist` or `torque`.
         displacement: Vec<f64> = numbers(&Array(QUERY_RADII, Range { min: 0.0, ..range::DISPLACEMENT }));
         /// Amplitudes of the tangential force, N, separated by commas or given one by one.
         force: Vec<f64> = numbers(&Array(QUERY_RADII, Range { min: 0.0, ..range::FORCE }));
+        /// Amplitudes of the angle of twist, rad, separated by commas or given one by one: of the indenter or, with
+        /// `machine_stiffness`, of the machine.
+        twist: Vec<f64> = numbers(&Array(QUERY_RADII, Range { min: 0.0, ..range::TWIST }));
+        /// Amplitudes of the torque, N·m, separated by commas or given one by one.
+        torque: Vec<f64> = numbers(&Array(QUERY_RADII, Range { min: 0.0, ..range::TORQUE }));
         /// Radii for the friction work per area, m, separated by commas or given one by one. Give this or `points`, or
         /// neither.
         radii: Vec<f64> = numbers(&Array(QUERY_RADII, range::CONTACT_RADIUS));
         /// Places along x for the friction work per area of a line contact, m, in place of `radii`.
         x: Vec<f64> = numbers(&Array(QUERY_RADII, range::PLACE));
-        /// The stiffness of a machine in series with the contact, N/m.
+        /// The stiffness of a machine in series with the contact, N/m; with `twist` or `torque` N·m/rad.
         machine_stiffness: f64 = number(&range::MACHINE_STIFFNESS);
         /// Number of harmonics, from the first on.
         harmonics: usize = count(&limits::HARMONICS);
@@ -44,20 +49,27 @@ pub async fn get_steady_cycle(
     headers: HeaderMap,
     CheckedQuery(query): CheckedQuery<CycleQuery>,
 ) -> Result<Response, Problem> {
-    let CycleQuery { displacement, force, radii, x, machine_stiffness, harmonics, points, format } = query;
+    let CycleQuery { displacement, force, twist, torque, radii, x, machine_stiffness, harmonics, points, format } =
+        query;
     // A single amplitude is no list: its place is the parameter.
     let amplitudes = |all: Vec<f64>| match all[..] {
         [one] => Amplitudes::One(one),
         _ => Amplitudes::Many(all),
     };
-    let drive = match (displacement, force) {
-        (Some(all), None) => CycleDrive::Displacement(amplitudes(all)),
-        (None, Some(all)) => CycleDrive::Force(amplitudes(all)),
-        (None, None) => return Err(Fault::new("/displacement", "give `displacement` or `force`").into()),
-        (Some(_), Some(_)) => {
-            return Err(Fault::new("/force", "conflicts with `displacement`: give one of them").into());
-        }
+    let given = [
+        displacement.map(|all| ("displacement", CycleDrive::Displacement(amplitudes(all)))),
+        force.map(|all| ("force", CycleDrive::Force(amplitudes(all)))),
+        twist.map(|all| ("twist", CycleDrive::Twist(amplitudes(all)))),
+        torque.map(|all| ("torque", CycleDrive::Torque(amplitudes(all)))),
+    ];
+    let mut given = given.into_iter().flatten();
+    let Some((first, drive)) = given.next() else {
+        return Err(Fault::new("/displacement", "give `displacement`, `force`, `twist` or `torque`").into());
     };
+    if let Some((second, _)) = given.next() {
+        let detail = format!("conflicts with `{first}`: give one of them");
+        return Err(Fault::new(format!("/{second}"), detail).into());
+    }
     let density = (points.is_some() || radii.is_some() || x.is_some()).then_some(WorkDensity { points, radii, x });
     let mut faults = Faults::default();
     let task = CycleTask::of_query(drive, machine_stiffness, harmonics, density, &mut faults);

@@ -106,6 +106,8 @@ impl Numbers for Vec<f64> {
     const EXPECTED: &'static str = "a number or an array of numbers";
 }
 
+/// What a study says of a cycle by twist.
+const NO_TWIST: &str = "not available for a twist: leave this out";
 /// Frequencies of a list.
 const FREQUENCIES: RangeInclusive<usize> = 1..=1_000;
 
@@ -200,6 +202,12 @@ impl CycleTask {
         Limit::check(&range::MACHINE_STIFFNESS, &stiffness, at.member("machine_stiffness"), faults);
         Limit::check(&HARMONICS, &harmonics, at.member("harmonics"), faults);
         density.check_limits(at, faults);
+        let twists = matches!(drive, CycleDrive::Twist(_) | CycleDrive::Torque(_));
+        if let Some(density) = density.as_ref().filter(|_| twists) {
+            let given = [("points", density.points.is_some()), ("radii", density.radii.is_some())];
+            let name = given.into_iter().find_map(|(name, is_given)| is_given.then_some(name)).unwrap_or("x");
+            faults.add(at.member(name), NO_TWIST);
+        }
         CycleTask::new((drive, ""), stiffness, harmonics, (density, ""), faults)
     }
 
@@ -355,7 +363,7 @@ impl Document for CycleRequest {
             }
         }
         if let Some(study) = study.filter(|_| task.as_ref().is_some_and(CycleTask::twists)) {
-            faults.add(at(study), "not available for a twist: leave this out");
+            faults.add(at(study), NO_TWIST);
         }
         setup.zip(task).map(|(setup, task)| (contact, setup, task))
     }
