@@ -1,7 +1,7 @@
 //! What the shape costs, over the same on a sphere: 20 reversals with the shear stress at 200 radii, a move with its
 //! force, all extrema of the shear stress after 20 reversals, the displacement of the surface at a radius, one of 200,
-//! in the same state, and the search for the protocol of 50 reversals that leaves the least. Below it, what a table
-//! costs before its first move.
+//! in the same state, and the search for the protocol of 50 reversals that leaves the least. Below it, what twist
+//! costs over shift of the sphere, and what a table costs before its first move.
 //!
 //! `cargo bench -p stickslip-mechanics --bench shapes` prints a table. Each run of a shape follows one of the sphere,
 //! and the ratio is the median over such pairs, so that other work on the machine counts on both sides.
@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 
 use scenes::{BALL, VALID, contact, elasticity, points, radii, reversed, shapes, slide, sphere, table};
 use stickslip_mechanics::profile::{Asperities, Direction, Ellipsoid, LineContact, LoadCurve, Sum, Tabulated};
-use stickslip_mechanics::protocol::minimax;
-use stickslip_mechanics::{Contact, Profile};
+use stickslip_mechanics::protocol::{falling_amplitude, minimax};
+use stickslip_mechanics::{Contact, Move, Profile, Tangential};
 
 const REVERSALS: usize = 20;
 const RADII: usize = 200;
@@ -69,6 +69,70 @@ fn moves(virgin: &Contact) -> Duration {
         slide(&mut contact, (2.0 * random.f64() - 1.0) * full);
         black_box(contact.force());
     }
+    start.elapsed()
+}
+
+/// The twist of a contact to so many parts of its first slip through nearly all of the disc.
+fn twist(contact: &mut Contact, part: f64, full: f64) {
+    let step = Move { tangential: Some(Tangential::Twist(part * full)), ..Move::default() };
+    contact.apply(&step).expect("an angle has no limit");
+}
+
+/// The angle, rad, at which a virgin contact carries nearly all of its torque.
+fn full_twist(virgin: &Contact) -> f64 {
+    let mut twisted = virgin.clone();
+    let limit = virgin.gross_slip_torque().expect(VALID);
+    let step = Move { tangential: Some(Tangential::Torque(0.99 * limit)), ..Move::default() };
+    twisted.apply(&step).expect("below the limit");
+    twisted.state().twist.expect("it is twisted")
+}
+
+/// The time of shifts to and fro, each with its state.
+fn shifts(virgin: &Contact) -> Duration {
+    let (mut contact, full) = (virgin.clone(), virgin.gross_slip_displacement());
+    let mut random = fastrand::Rng::with_seed(1);
+    let start = Instant::now();
+    for _ in 0..MOVES {
+        slide(&mut contact, (2.0 * random.f64() - 1.0) * full);
+        black_box(contact.state());
+    }
+    start.elapsed()
+}
+
+/// The time of one of them.
+fn a_shift(virgin: &Contact) -> Duration {
+    shifts(virgin) / MOVES as u32
+}
+
+/// The time of twists to and fro, each with its state.
+fn twists(virgin: &Contact) -> Duration {
+    let (mut contact, full) = (virgin.clone(), full_twist(virgin));
+    twist(&mut contact, 0.0, full);
+    let mut random = fastrand::Rng::with_seed(1);
+    let start = Instant::now();
+    for _ in 0..MOVES {
+        twist(&mut contact, 2.0 * random.f64() - 1.0, full);
+        black_box(contact.state());
+    }
+    start.elapsed()
+}
+
+/// The time of reversals of twist, and the hoop stress.
+fn hoops(virgin: &Contact) -> Duration {
+    let (radii, full) = (radii(virgin, RADII), full_twist(virgin));
+    let mut contact = virgin.clone();
+    twist(&mut contact, 0.0, full);
+    let start = Instant::now();
+    falling_amplitude(REVERSALS, 1.0).into_iter().for_each(|part| twist(&mut contact, part, full));
+    black_box(contact.hoops(&radii));
+    start.elapsed()
+}
+
+/// The time of the first twist, which makes the limit of the angle.
+fn first_twist(virgin: &Contact) -> Duration {
+    let mut contact = virgin.clone();
+    let start = Instant::now();
+    twist(&mut contact, 0.0, 0.0);
     start.elapsed()
 }
 
@@ -132,11 +196,16 @@ fn new_tables(rows: &[(bool, u32)]) {
 }
 
 /// The median time of a scene in us for each of `count` parts of it, and over that of the sphere.
-fn compared(scene: Scene, (sphere, shape): (&Contact, &Contact), count: usize, pairs: usize) -> String {
+fn compared(scene: Scene, contacts: (&Contact, &Contact), count: usize, pairs: usize) -> String {
+    compared_with([scene; 2], contacts, count, pairs)
+}
+
+/// The same of a scene of the sphere and another one of the shape.
+fn compared_with(scenes: [Scene; 2], (sphere, shape): (&Contact, &Contact), count: usize, pairs: usize) -> String {
     let (mut times, mut ratios) = (Vec::new(), Vec::new());
     for _ in 0..pairs {
-        let unit = scene(sphere).as_secs_f64();
-        let time = scene(shape).as_secs_f64();
+        let unit = scenes[0](sphere).as_secs_f64();
+        let time = scenes[1](shape).as_secs_f64();
         times.push(1e6 * time / count as f64);
         ratios.push(time / unit);
     }
@@ -165,6 +234,19 @@ fn main() {
             (protocol, 1, PAIRS_OF_SEARCHES),
         ];
         let figures = scenes.map(|(scene, count, pairs)| compared(scene, (&unit, &shape), count, pairs));
+        println!("| {name} | {} |", figures.join(" | "));
+    }
+    println!("\nTwist, over the shift of the sphere; the first twist in moves of it.\n");
+    println!("| shape | a move with its state | | hoop stress at 200 radii | | first twist | |");
+    println!("|---|---|---|---|---|---|---|");
+    for (name, profile) in shapes().into_iter().filter(|(name, _)| wanted(name)) {
+        let (shape, pairs) = (contact(profile), PAIRS);
+        let virgin = (&unit, &shape);
+        let figures = [
+            compared_with([shifts, twists], virgin, MOVES, pairs),
+            compared_with([stresses, hoops], virgin, 1, pairs),
+            compared_with([a_shift, first_twist], virgin, 1, pairs),
+        ];
         println!("| {name} | {} |", figures.join(" | "));
     }
     println!("\nWhat has no stress field, a move in us, and over the sphere's.\n");
