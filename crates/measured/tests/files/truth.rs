@@ -2,11 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use fastrand::Rng;
 use stickslip_measured::import::{Mapping, Places, read_loop, read_scan};
 
 use super::for_cases;
-use super::writer::{CHARSETS, Charset, FORCES, LENGTHS, MISSING, Style, TIMES, one, shuffled};
+use super::writer::{CHARSETS, FORCES, LENGTHS, MISSING, Style, TIMES, one, shuffled};
 
 /// Rows of a table.
 const ROWS: usize = 24;
@@ -49,9 +48,18 @@ fn is_near(found: f64, expected: f64) -> bool {
     (found - expected).abs() <= 1e-12 * expected.abs().max(1e-12)
 }
 
-/// A character set that has the micro sign as the spelling of its units has it.
-fn charset(random: &mut Rng) -> Charset {
-    one(CHARSETS, random)
+#[test]
+fn every_mark_of_a_missing_number_is_written() {
+    let source = include_str!("../../src/import/number.rs");
+    let (_, table) = source.split_once("const MISSING: ").unwrap();
+    let (_, table) = table.split_once("= [").unwrap();
+    let (table, _) = table.split_once("];").unwrap();
+    let marks: Vec<String> =
+        table.split('"').skip(1).step_by(2).map(|mark| mark.replace("\\u{221e}", "\u{221e}")).collect();
+    assert!(marks.len() > 40, "{marks:?}");
+    for mark in marks {
+        assert!(MISSING.iter().any(|written| written.to_lowercase() == mark), "{mark} is in no random file");
+    }
 }
 
 #[test]
@@ -83,26 +91,22 @@ fn a_loop_is_what_was_written_in_any_unit_encoding_order_and_separator() {
         let mut rows: Vec<Vec<String>> =
             (0..ROWS).map(|row| order.iter().map(|index| style.number((columns[*index].1)(row))).collect()).collect();
         // A number that is missing where it is needed makes a gap; in the first half of the file there are none.
-        let gap = random.bool().then(|| ROWS / 2 + random.usize(..ROWS / 2));
-        if let Some(gap) = gap {
+        let charset = one(CHARSETS, random);
+        let gap = ROWS / 2 + random.usize(..ROWS / 2);
+        let mut is_gap = false;
+        if random.bool() {
             let place = order.iter().position(|index| *index == random.usize(..2)).unwrap_or(0);
             let is_needed = order[place] < 2;
-            let mark = one(MISSING, random);
-            let is_blank = style.separator == ' ' && mark.is_empty();
-            rows[gap][place] =
-                if is_blank || !is_needed { style.number((columns[order[place]].1)(gap)) } else { mark.to_owned() };
+            if is_needed {
+                rows[gap][place] = style.missing(charset, random);
+                is_gap = true;
+            }
         }
         let (text, first) = style.table(&names, &rows);
-        let charset = charset(random);
         let bytes = charset.encode(&text);
         let found = read_loop(&bytes, &Mapping::default(), &|| true)
             .unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
-        let kept: Vec<usize> = (0..ROWS)
-            .filter(|row| {
-                let lacks = |cell: &String| MISSING.contains(&cell.as_str());
-                !rows[*row].iter().any(lacks)
-            })
-            .collect();
+        let kept: Vec<usize> = (0..ROWS).filter(|row| !is_gap || *row != gap).collect();
         let context = || format!("{charset:?} {found:?}\n{text}");
         assert_eq!(found.displacement.len(), kept.len(), "{}", context());
         let (u_factor, f_factor) = (found.displacement_unit.unit().to_si(1.0), found.force_unit.unit().to_si(1.0));
@@ -154,19 +158,19 @@ fn a_scan_is_what_was_written_in_any_unit_encoding_order_and_separator() {
         let order = shuffled(names.len(), random);
         let names: Vec<String> = order.iter().map(|index| names[*index].clone()).collect();
         let missing = random.usize(1..ROWS - 1);
-        let mark = one(&MISSING[1..], random);
+        let charset = one(CHARSETS, random);
+        let mark = style.missing(charset, random);
         let rows: Vec<Vec<String>> = (0..ROWS)
             .map(|row| {
                 let cells = [
                     style.number(place(row) / lateral.1),
-                    if row == missing { mark.to_owned() } else { style.number(height_of(row) / height.1) },
+                    if row == missing { mark.clone() } else { style.number(height_of(row) / height.1) },
                     (row + 1).to_string(),
                 ];
                 order.iter().map(|index| cells[*index].clone()).collect()
             })
             .collect();
         let (text, first) = style.table(&names, &rows);
-        let charset = charset(random);
         let found = read_scan(&charset.encode(&text), &Mapping::default(), 0, &|| true);
         let found = found.unwrap_or_else(|error| panic!("{error}\n{charset:?}\n{text}"));
         let context = || format!("{charset:?} {found:?}\n{text}");

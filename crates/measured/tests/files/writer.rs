@@ -80,25 +80,67 @@ pub const NO_UNITS: &[&str] = &[
     "NM",
     "?N",
 ];
+/// Marks of a missing number, each of those that are read among them (`truth.rs` asks for it).
 pub const MISSING: &[&str] = &[
     "",
     "NaN",
     "-nan",
     "-nan(ind)",
+    "nan123",
     "1.#QNAN",
     "-1.#IND",
+    "qNaN",
+    "NULL",
+    "nil",
+    "None",
+    "BAD",
+    "NoData",
+    "No Data",
+    "n/a",
+    "N.A.",
+    "NA",
+    "n.a",
+    "missing",
+    "Void",
+    "INVALID",
+    "Empty",
+    "blank",
+    "UNDEF",
+    "undefined",
+    "inf",
+    "Infinity",
+    "\u{221e}",
+    "OL",
+    "O.L.",
+    "over",
+    "OVERFLOW",
+    "nv",
+    "k.A.",
+    "k. A.",
+    "fehlt",
+    "leer",
+    "ung\u{fc}ltig",
     "#N/A",
     "#NV",
-    "n/a",
+    "#DIV/0!",
+    "#VALUE!",
+    "#WERT!",
+    "#NUM!",
+    "#ZAHL!",
+    "#REF!",
+    "#BEZUG!",
+    "#NAME?",
+    "#NULL!",
     "---",
     "-",
+    "\u{2013}",
+    "\u{2014}",
     "?",
     "*****",
-    "null",
-    "BAD",
-    "inf",
-    "No Data",
+    "..",
 ];
+/// Codes for no value, in place of a number: of IEEE 488.2, of Surfer, and the largest number in single precision.
+pub const NO_VALUES: &[f64] = &[9.91e37, -9.91e37, 9.9e37, 1.701_41e38, 3.402_823_466e38, 1e39];
 
 /// A character set, as the function that writes a text in it; none if it lacks a character.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -202,6 +244,22 @@ impl Style {
         let text = format!("{value:.14e}").replace('e', &self.exponent.to_string());
         let text = if self.has_decimal_commas { text.replace('.', ",") } else { text };
         if self.is_quoted { format!("\"{text}\"") } else { text }
+    }
+
+    /// A mark or a code in place of a number that is missing, in a file of this character set.
+    pub fn missing(&self, charset: Charset, random: &mut Rng) -> String {
+        let index = random.usize(..MISSING.len() + NO_VALUES.len());
+        match MISSING.get(index) {
+            None => self.number(NO_VALUES[index - MISSING.len()]),
+            // Of letters beyond ASCII these have the micro sign alone.
+            Some(mark) if !mark.is_ascii() && matches!(charset, Charset::Micro(_) | Charset::Utf8Twice) => {
+                "NaN".to_owned()
+            }
+            // Blanks separate, and so does a line without a cell.
+            Some(mark) if self.separator == ' ' && mark.is_empty() => "NaN".to_owned(),
+            Some(mark) if self.separator == ' ' && mark.contains(' ') => format!("\"{mark}\""),
+            Some(mark) => (*mark).to_owned(),
+        }
     }
 
     /// The table, with lines of names and then rows; the first line of rows, from 1 on.
