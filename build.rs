@@ -1,4 +1,5 @@
-//! Passes the versions of the program and of the compiler to the program, and compresses the files of the page.
+//! Passes the versions of the program and of the compiler to the program, and compresses the files of the page and those
+//! of Swagger UI.
 
 #[path = "build/commit.rs"]
 mod commit;
@@ -6,15 +7,28 @@ mod commit;
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::io::Write as _;
+use std::io::{Cursor, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use zip::ZipArchive;
 
 /// The folder of the page.
 const PAGE: &str = "src/page";
+/// What opens the document of this service in Swagger UI, in place of its own file of this name.
+const OPENING: &str = "build/swagger-initializer.js";
+/// The other files that its page loads.
+const SWAGGER_UI: [&str; 7] = [
+    "favicon-16x16.png",
+    "favicon-32x32.png",
+    "index.css",
+    "index.html",
+    "swagger-ui-bundle.js",
+    "swagger-ui-standalone-preset.js",
+    "swagger-ui.css",
+];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
@@ -34,22 +48,43 @@ fn main() {
     let mut paths: Vec<PathBuf> =
         files.map(|entry| entry.expect("the folder of the page can be read").path()).collect();
     paths.sort();
+    let name = |path: &Path| path.file_name().and_then(OsStr::to_str).expect("plain names").to_owned();
+    let read = |path: &PathBuf| (name(path), fs::read(path).expect("a file of the page can be read"));
+    write_assets(out, "page", paths.iter().map(read).collect());
+    write_assets(out, "docs", swagger_ui());
+}
+
+/// The files of Swagger UI that its page loads, with what opens this service's document.
+fn swagger_ui() -> Vec<(String, Vec<u8>)> {
+    let archive = Cursor::new(utoipa_swagger_ui_vendored::SWAGGER_UI_VENDORED);
+    let mut archive = ZipArchive::new(archive).expect("Swagger UI is an archive");
+    let mut found = vec![("swagger-initializer.js".to_owned(), fs::read(OPENING).expect("the file exists"))];
+    for index in 0..archive.len() {
+        let mut file = archive.by_index(index).expect("the archive can be read");
+        let path = file.name().expect("plain names").into_owned();
+        let Some(name) = SWAGGER_UI.iter().find(|name| path.ends_with(&format!("/dist/{name}"))) else { continue };
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).expect("the archive can be read");
+        found.push(((*name).to_owned(), bytes));
+    }
+    assert_eq!(found.len(), SWAGGER_UI.len() + 1, "Swagger UI has all of its files");
+    found
+}
+
+/// Compresses files, and writes the list of them that the program includes.
+fn write_assets(out: &Path, list_name: &str, files: Vec<(String, Vec<u8>)>) {
     let mut list = String::from("[");
-    for path in paths {
-        let plain = path.canonicalize().expect("a file of the page exists");
-        let name = plain.file_name().and_then(OsStr::to_str).expect("the files of the page have plain names");
-        let packed = out.join(format!("{name}.gz"));
-        let bytes = fs::read(&plain).expect("a file of the page can be read");
+    for (name, bytes) in files {
+        let packed = out.join(format!("{list_name}-{name}.gz"));
         pack(&packed, &bytes);
         let mut version = DefaultHasher::new();
         bytes.hash(&mut version);
         // Of both encodings, and so weak.
         let tag = format!("W/\"{:016x}\"", version.finish());
-        let (plain, packed) = (format!("include_bytes!({plain:?})"), format!("include_bytes!({packed:?})"));
-        list.push_str(&format!("Asset {{ name: {name:?}, tag: {tag:?}, plain: {plain}, packed: {packed} }},\n"));
+        list.push_str(&format!("Asset::new({name:?}, {tag:?}, include_bytes!({packed:?})),\n"));
     }
     list.push(']');
-    fs::write(out.join("page.in"), list).expect("the folder can be written");
+    fs::write(out.join(format!("{list_name}.in")), list).expect("the folder can be written");
 }
 
 /// Passes the version, with the commit where it is known: from `BUILD_COMMIT`, else from the repository. A debug build

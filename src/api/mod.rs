@@ -27,7 +27,6 @@ use tokio::sync::watch;
 use tower::ServiceBuilder;
 use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
-use utoipa_swagger_ui::{Config, SwaggerUi};
 
 use crate::access::Role;
 use crate::server::tls::Tls;
@@ -93,9 +92,8 @@ pub async fn serve_within(
 /// All routes, with what is around every handler.
 fn router(app: App, reception: Reception) -> Router {
     let (api, _) = described().router.split_for_parts();
-    let docs = SwaggerUi::new("/docs").config(Config::from("/openapi.json").validator_url("none"));
     let (origins, reception) = (Arc::clone(&app.access.origins), Arc::new(reception));
-    let all = api.with_state(Arc::new(app)).merge(docs).merge(page::routes()).fallback(meta::not_found);
+    let all = api.with_state(Arc::new(app)).merge(page::routes()).fallback(meta::not_found);
     if origins.is_empty() {
         return all.layer(from_fn_with_state(reception, serve_request));
     }
@@ -117,8 +115,7 @@ pub fn document() -> &'static str {
 pub fn need(method: &str, route: &str) -> Option<Role> {
     let method = if method == "HEAD" { "GET" } else { method };
     static FACTS: LazyLock<Vec<(&str, String, Facts)>> = LazyLock::new(|| described().facts);
-    // With the slash that a folder may have.
-    if method == "GET" && [page::PAGE, page::FILES, "/docs", "/docs/", "/docs/{*rest}"].contains(&route) {
+    if method == "GET" && (route == page::PAGE || route == page::FILES || page::DOCS.contains(&route)) {
         return None;
     }
     let known = FACTS.iter().find(|(known, path, _)| *known == method && path == route);

@@ -111,6 +111,28 @@ async fn short_compressed_and_streamed_replies_stay_unchanged() {
 }
 
 #[tokio::test]
+async fn the_page_of_the_api_has_all_of_its_files_and_opens_the_document() {
+    let server = Server::start().await;
+    let page = server.get("/docs/").await.text().await.unwrap();
+    let named = ["src=\"", "href=\""].iter().flat_map(|start| page.split(start).skip(1));
+    let files: Vec<&str> = named.filter_map(|rest| rest.split('"').next()).collect();
+    assert!(files.len() >= 7, "{files:?}");
+    for file in files {
+        let path = format!("/docs/{}", file.trim_start_matches("./"));
+        let plain = get(&server, &path, &[]).await;
+        let kind = header(&plain, "content-type").unwrap();
+        let end = file.rsplit('.').next().unwrap();
+        assert!(kind.contains(if end == "js" { "javascript" } else { end }), "{path}: {kind}");
+        let plain = plain.bytes().await.unwrap();
+        let packed = get(&server, &path, &[("accept-encoding", "gzip")]).await;
+        assert_eq!(header(&packed, "content-encoding"), Some("gzip"), "{path}");
+        assert!(decoded("gzip", &packed.bytes().await.unwrap()) == plain && !plain.is_empty(), "{path}");
+    }
+    let opening = server.get("/docs/swagger-initializer.js").await.text().await.unwrap();
+    assert!(opening.contains("url: \"/openapi.json\"") && !opening.contains("://"), "{opening}");
+}
+
+#[tokio::test]
 async fn a_whole_history_is_compressed_as_it_is_sent() {
     let (server, contact) = moved().await;
     let path = json!({"path": {"falling_amplitude": {"reversals": 1200, "amplitude": 1e-8}}, "steps": "last"});

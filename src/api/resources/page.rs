@@ -1,10 +1,15 @@
-//! `/`: the web page. Its files are part of the program, compressed when it was built.
+//! `/`: the web page; `/docs`: the documentation of the API, by Swagger UI. Their files are part of the program,
+//! compressed when it was built.
+
+use std::io::Read as _;
+use std::sync::{LazyLock, OnceLock};
 
 use axum::Router;
 use axum::extract::Path;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
-use axum::response::{IntoResponse as _, Response};
+use axum::response::{IntoResponse as _, Redirect, Response};
 use axum::routing::get;
+use flate2::read::GzDecoder;
 
 use super::meta;
 use crate::api::accept::admission;
@@ -14,37 +19,67 @@ use crate::api::reply;
 pub const PAGE: &str = "/";
 pub const FILES: &str = "/page/{name}";
 
+/// The paths of the documentation: with the slash that a folder may have, it is the page, and then its files.
+pub const DOCS: [&str; 3] = ["/docs", "/docs/", "/docs/{*rest}"];
+
 struct Asset {
     name: &'static str,
     /// Changes with its content.
     tag: &'static str,
-    plain: &'static [u8],
     packed: &'static [u8],
+    /// For clients that do not take it compressed; made when the first of them asks.
+    plain: OnceLock<Vec<u8>>,
 }
 
-/// All files, as the build script found them.
-const ASSETS: &[Asset] = &include!(concat!(env!("OUT_DIR"), "/page.in"));
+/// All files of the page, as the build script found them.
+static ASSETS: LazyLock<Vec<Asset>> = LazyLock::new(|| Vec::from(include!(concat!(env!("OUT_DIR"), "/page.in"))));
+/// All files of the documentation.
+static DOCUMENTATION: LazyLock<Vec<Asset>> =
+    LazyLock::new(|| Vec::from(include!(concat!(env!("OUT_DIR"), "/docs.in"))));
 
 pub fn routes() -> Router {
-    Router::new().route(PAGE, get(index)).route(FILES, get(file))
+    let [folder, index_of_docs, files_of_docs] = DOCS;
+    Router::new()
+        .route(PAGE, get(index))
+        .route(FILES, get(async |Path(name): Path<String>, headers, uri| file(&ASSETS, &name, headers, uri).await))
+        .route(folder, get(async || Redirect::to(index_of_docs)))
+        .route(index_of_docs, get(async |headers, uri| file(&DOCUMENTATION, "index.html", headers, uri).await))
+        .route(
+            files_of_docs,
+            get(async |Path(name): Path<String>, headers, uri| file(&DOCUMENTATION, &name, headers, uri).await),
+        )
 }
 
 async fn index(headers: HeaderMap, uri: Uri) -> Response {
-    file(Path("index.html".to_owned()), headers, uri).await
+    file(&ASSETS, "index.html", headers, uri).await
 }
 
-async fn file(Path(name): Path<String>, headers: HeaderMap, uri: Uri) -> Response {
-    match ASSETS.iter().find(|asset| asset.name == name) {
+async fn file(assets: &'static [Asset], name: &str, headers: HeaderMap, uri: Uri) -> Response {
+    match assets.iter().find(|asset| asset.name == name) {
         Some(asset) => asset.answer(&headers),
         None => meta::not_found(uri).await.into_response(),
     }
 }
 
 impl Asset {
+    fn new(name: &'static str, tag: &'static str, packed: &'static [u8]) -> Asset {
+        Asset { name, tag, packed, plain: OnceLock::new() }
+    }
+
+    /// The file as it was before the build.
+    fn plain(&'static self) -> &'static [u8] {
+        self.plain.get_or_init(|| {
+            let mut plain = Vec::new();
+            let unpacked = GzDecoder::new(self.packed).read_to_end(&mut plain);
+            unpacked.expect("the build script has compressed it");
+            plain
+        })
+    }
+
     /// The file, or 304 if the client has the current version.
-    fn answer(&self, asked: &HeaderMap) -> Response {
+    fn answer(&'static self, asked: &HeaderMap) -> Response {
         let gzip = admission(asked, "accept-encoding", "gzip").is_some_and(|gzip| gzip.quality > 0.0);
-        let body = if gzip { self.packed } else { self.plain };
+        let body = if gzip { self.packed } else { self.plain() };
         let current = reply::is_current(asked, self.tag);
         let response = if current { StatusCode::NOT_MODIFIED.into_response() } else { body.into_response() };
         let mut response = reply::tagged(response, self.tag);
@@ -65,6 +100,7 @@ impl Asset {
         match self.name.rsplit('.').next() {
             Some("html") => "text/html; charset=utf-8",
             Some("css") => "text/css; charset=utf-8",
+            Some("png") => "image/png",
             Some("svg") => "image/svg+xml",
             _ => "text/javascript; charset=utf-8",
         }
