@@ -108,8 +108,12 @@ impl Service {
 
 /// What can be understood in more than one way in a head that can be read in one, if anything.
 fn ambiguity<B>(request: &Request<B>) -> Option<&'static str> {
-    if request.version() == Version::HTTP_11 && !request.headers().contains_key(header::HOST) {
+    let headers = request.headers();
+    if request.version() == Version::HTTP_11 && !headers.contains_key(header::HOST) {
         return Some("the head names no host");
+    }
+    if headers.len() == headers.keys_len() {
+        return None;
     }
     let faults = [
         ("host", "the head names more than one host"),
@@ -119,6 +123,6 @@ fn ambiguity<B>(request: &Request<B>) -> Option<&'static str> {
         ("last-event-id", "the head has more than one Last-Event-ID"),
         ("origin", "the head has more than one Origin"),
     ];
-    let is_repeated = |name: &str| request.headers().get_all(name).iter().nth(1).is_some();
+    let is_repeated = |name: &str| headers.get_all(name).iter().nth(1).is_some();
     faults.into_iter().find(|(name, _)| is_repeated(name)).map(|(_, fault)| fault)
 }

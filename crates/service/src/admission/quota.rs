@@ -1,6 +1,7 @@
 //! What one client may have of what all share.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fmt;
 use std::sync::Arc;
 
@@ -157,16 +158,20 @@ impl Share {
     pub fn resize(&mut self, amount: usize) -> Result<(), QuotaExceeded> {
         let (quota, client) = &self.of;
         let mut used = self.quotas.used.lock();
-        let others = used.get(&self.of).map_or(0, |count| count - self.amount);
+        let entry = used.entry(self.of.clone());
+        let others = match &entry {
+            Entry::Occupied(count) => count.get() - self.amount,
+            Entry::Vacant(_) => 0,
+        };
         let all = others.saturating_add(amount);
         if amount > self.amount && all > self.quotas.limits.of(*quota) && *client != Client::Server {
             drop(used);
             return Err(self.quotas.exceeded(*quota));
         }
-        if all == 0 {
-            used.remove(&self.of);
-        } else {
-            used.insert(self.of.clone(), all);
+        match entry {
+            Entry::Occupied(count) if all == 0 => drop(count.remove()),
+            Entry::Vacant(_) if all == 0 => {}
+            entry => drop(entry.insert_entry(all)),
         }
         self.amount = amount;
         Ok(())
