@@ -5,10 +5,13 @@ use std::net::{IpAddr, SocketAddr};
 use std::sync::Arc;
 
 use axum::http::uri::Authority;
-use axum::http::{HeaderValue, Method, Request, header};
+use axum::http::{HeaderName, HeaderValue, Method, Request, header};
 
 /// Paths that show nothing but the health of the server: probes call them by any name.
 const HEALTH: [&str; 2] = ["/healthz", "/readyz"];
+
+/// From where a page sends a request, as its browser says.
+const FETCH_SITE: HeaderName = HeaderName::from_static("sec-fetch-site");
 
 /// The names by which a service without keys is called, and the origins whose pages may change something.
 #[derive(Clone, Debug)]
@@ -29,11 +32,14 @@ impl OwnHosts {
         if HEALTH.contains(&request.uri().path()) {
             return None;
         }
-        let headers = request.headers();
-        let named = headers.get(header::HOST).and_then(|host| Authority::try_from(host.as_bytes()).ok());
-        let host = request.uri().authority().cloned().or(named);
+        let (headers, target) = (request.headers(), request.uri().authority());
+        let named = headers.get(header::HOST).map(HeaderValue::as_bytes);
+        // Most clients call this machine by its usual names, and are no page whose origin is to be compared with them.
+        let is_usual = target.is_none() && named.is_some_and(is_usual) && !headers.contains_key(header::ORIGIN);
+        let named_authority = || named.and_then(|host| Authority::try_from(host).ok());
+        let host = if is_usual { None } else { target.cloned().or_else(named_authority) };
         // Without a host the request has the version before that of all browsers.
-        if headers.contains_key(header::HOST) && !host.as_ref().is_some_and(|host| self.is_own(host)) {
+        if !is_usual && named.is_some() && !host.as_ref().is_some_and(|host| self.is_own(host)) {
             return Some(
                 "the service has no keys, and the host of this request is not one of its own: --allowed-hosts adds it",
             );
@@ -48,7 +54,7 @@ impl OwnHosts {
         };
         let foreign = match headers.get(header::ORIGIN) {
             Some(origin) => !own(origin),
-            None => headers.get("sec-fetch-site").is_some_and(|site| site == "cross-site"),
+            None => headers.get(FETCH_SITE).is_some_and(|site| site == "cross-site"),
         };
         foreign.then_some("a page of another site sent this: --cors-origins admits its origin")
     }
@@ -73,6 +79,15 @@ impl OwnHosts {
         let here = self.listen.ip();
         address.is_ok_and(|address| address.is_loopback() || here.is_unspecified() || address == here)
     }
+}
+
+/// Whether this is one of the usual names of the machine itself, with a port or without.
+fn is_usual(host: &[u8]) -> bool {
+    let (name, port) = host.split_at(host.iter().position(|byte| *byte == b':').unwrap_or(host.len()));
+    let is_port = |port: &[u8]| {
+        port.iter().all(u8::is_ascii_digit) && str::from_utf8(port).is_ok_and(|port| port.parse::<u16>().is_ok())
+    };
+    [&b"127.0.0.1"[..], b"localhost"].contains(&name) && port.get(1..).is_none_or(is_port)
 }
 
 #[cfg(test)]
