@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use axum::extract::{FromRequestParts, Path};
 use axum::http::request::Parts;
-use axum::http::{HeaderMap, HeaderValue};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
 use utoipa::IntoParams;
 use uuid::Uuid;
 
@@ -14,6 +14,10 @@ use super::problem::{Code, Problem};
 use super::request_context::{Context, RequestContext};
 use super::state::{App, TenantApp};
 use crate::sessions::Expected;
+
+/// The headers that have no name in the library.
+const IDEMPOTENCY_KEY: HeaderName = HeaderName::from_static("idempotency-key");
+const LAST_EVENT_ID: HeaderName = HeaderName::from_static("last-event-id");
 
 /// Characters of an idempotency key.
 const KEY_LENGTH: usize = 255;
@@ -96,10 +100,16 @@ async fn identified(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -
         let shown: String = id.chars().take(40).collect();
         Problem::new(kind, format!("the {noun} {shown} was not found"))
     };
-    // Percent signs may not decode.
-    let path = Path::<String>::from_request_parts(parts, app).await;
-    let Path(id) = path.map_err(|_| missing("of this name"))?;
-    let id = Uuid::parse_str(&id).map_err(|_| missing(&id))?;
+    let plain = parts.uri.path().split('/').nth(2).and_then(|id| Uuid::parse_str(id).ok());
+    let id = match plain {
+        Some(id) => id,
+        None => {
+            // Percent signs may not decode.
+            let path = Path::<String>::from_request_parts(parts, app).await;
+            let Path(id) = path.map_err(|_| missing("of this name"))?;
+            Uuid::parse_str(&id).map_err(|_| missing(&id))?
+        }
+    };
     let Ok(TenantApp(app)) = TenantApp::from_request_parts(parts, app).await;
     Ok((app, id))
 }
@@ -107,7 +117,7 @@ async fn identified(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -
 /// The value of a header as `parse` reads it, if the client sends one, which is refused if it cannot be read.
 fn header<T>(
     headers: &HeaderMap,
-    name: &str,
+    name: HeaderName,
     parse: impl FnOnce(&str) -> Option<T>,
     refused: impl FnOnce() -> Problem,
 ) -> Result<Option<T>, Problem> {
@@ -126,7 +136,7 @@ impl FromRequestParts<Arc<App>> for IfMatch {
             if text == "*" { Some(None) } else { tag.and_then(expected).map(Some) }
         };
         let refusal = "If-Match must be a sequence in quotes, such as \"3\", or *";
-        let expected = header(&parts.headers, "if-match", parse, || Problem::new(Code::InvalidInput, refusal))?;
+        let expected = header(&parts.headers, header::IF_MATCH, parse, || Problem::new(Code::InvalidInput, refusal))?;
         Ok(IfMatch { expected: expected.flatten() })
     }
 }
@@ -152,7 +162,7 @@ impl IdempotencyKey {
         let parse = |key: &str| Some(key).filter(is_sound).map(str::to_owned);
         let refusal = || format!("Idempotency-Key must be 1 to {KEY_LENGTH} visible ASCII characters");
         let refused = || Problem::new(Code::InvalidInput, refusal());
-        Ok(IdempotencyKey { key: header(headers, "idempotency-key", parse, refused)? })
+        Ok(IdempotencyKey { key: header(headers, IDEMPOTENCY_KEY, parse, refused)? })
     }
 }
 
@@ -162,7 +172,7 @@ impl FromRequestParts<Arc<App>> for LastEventId {
     async fn from_request_parts(parts: &mut Parts, _: &Arc<App>) -> Result<Self, Problem> {
         let refusal = "Last-Event-ID must be the number of a move, such as 3";
         let refused = || Problem::at(Code::InvalidInput, "/Last-Event-ID", refusal);
-        Ok(LastEventId { sequence: header(&parts.headers, "last-event-id", |text| text.parse().ok(), refused)? })
+        Ok(LastEventId { sequence: header(&parts.headers, LAST_EVENT_ID, |text| text.parse().ok(), refused)? })
     }
 }
 
