@@ -16,6 +16,7 @@ mod progress;
 mod reload;
 mod serve;
 mod settings;
+mod stopping;
 mod summary;
 mod sweep;
 

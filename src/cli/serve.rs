@@ -3,8 +3,7 @@
 use std::io;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
-use std::thread;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use axum::http::uri::Authority;
@@ -12,7 +11,7 @@ use axum::http::{HeaderValue, Uri};
 use bytesize::ByteSize;
 use clap::{ArgAction, Args, FromArgMatches as _, ValueEnum};
 use tokio::net::TcpListener;
-use tokio::signal::unix::{Signal, SignalKind, signal};
+use tokio::signal::unix::Signal;
 use tokio::sync::watch;
 use tracing_subscriber::filter::{LevelFilter, ParseError, Targets};
 use tracing_subscriber::layer::SubscriberExt as _;
@@ -26,13 +25,14 @@ use super::limits::Limits;
 use super::log_queue::LogQueue;
 use super::reload::reload_on_change;
 use super::settings::Settings;
+use super::stopping::{StopSignals, Stopping};
 use crate::access::Keys;
 use crate::admission::Pool;
 use crate::api::middleware::security_headers::origin;
 use crate::api::{self, Access, App};
 use crate::jobs::{self, Jobs};
 use crate::otlp;
-use crate::server::connection_limits::{GRACE, LAST};
+use crate::server::connection_limits::LAST;
 use crate::server::tls::{Tls, TlsFiles};
 use crate::server::{ConnectionLimiter, OwnHosts, available_memory, memory_budget};
 use crate::sessions::{self, Sessions};
@@ -150,7 +150,7 @@ pub fn serve(mut options: Serve, demo: Option<Demo>) -> Result<(), String> {
     let runtime = tokio::runtime::Builder::new_multi_thread().max_blocking_threads(threads).enable_all().build();
     let runtime = runtime.map_err(|error| format!("cannot start: {error}"))?;
     // Before anything else: what a signal does without a handler is not what it is meant to do.
-    let mut signals = runtime.block_on(async { Signals::listen() })?;
+    let (mut signals, hangup) = runtime.block_on(async { StopSignals::listen() })?;
     // Spans go to a collector alone, and are not even made where there is none.
     let filter = options.log.clone().with_target(otlp::SPANS, LevelFilter::OFF);
     let endpoint = options.otlp_endpoint.as_deref();
@@ -173,7 +173,7 @@ pub fn serve(mut options: Serve, demo: Option<Demo>) -> Result<(), String> {
             tokio::select! {
                 opened = store::open(&options.store) => Some(opened),
                 // A database may be waited for.
-                () = signals.stop() => None,
+                () = signals.wait() => None,
             }
         });
         let Some(store) = opened.transpose().map_err(|error| error.to_string())? else { return Ok(None) };
@@ -186,7 +186,8 @@ pub fn serve(mut options: Serve, demo: Option<Demo>) -> Result<(), String> {
             "starting"
         );
         let reload = reload(&options, keys, tls.clone());
-        let listening = listen(&options, demo, access, tls, reload, Arc::clone(&store), (signals, stop.clone()));
+        let stopping = (signals, stop.clone());
+        let listening = listen(&options, demo, access, tls, (reload, hangup), Arc::clone(&store), stopping);
         runtime.block_on(listening).map(|()| Some(store))
     })();
     let end = stop.begin();
@@ -201,64 +202,6 @@ pub fn serve(mut options: Serve, demo: Option<Demo>) -> Result<(), String> {
     }
     queue.finish(end.min(Instant::now() + LAST));
     served
-}
-
-/// The signals that are listened for.
-struct Signals {
-    terminate: Signal,
-    interrupt: Signal,
-    hangup: Signal,
-}
-
-impl Signals {
-    fn listen() -> Result<Signals, String> {
-        // A write beyond the limit of the size of files (`ulimit -f`) fails as on a full disk: without a handler, the
-        // signal that comes with it ends the process. A handler is never removed.
-        let beyond = SignalKind::from_raw(rustix::process::Signal::XFSZ.as_raw());
-        let kinds = [SignalKind::terminate(), SignalKind::interrupt(), SignalKind::hangup(), beyond].map(signal);
-        match kinds {
-            [Ok(terminate), Ok(interrupt), Ok(hangup), Ok(_)] => Ok(Signals { terminate, interrupt, hangup }),
-            _ => Err("cannot listen for signals".to_owned()),
-        }
-    }
-
-    /// Waits for one that stops the process.
-    async fn stop(&mut self) {
-        tokio::select! {
-            _ = self.terminate.recv() => {}
-            _ = self.interrupt.recv() => {}
-        }
-    }
-}
-
-/// The one deadline of all that a stop takes. Clones share it.
-#[derive(Clone)]
-struct Stopping {
-    allowed: Duration,
-    end: Arc<OnceLock<Instant>>,
-    log: LogQueue,
-}
-
-impl Stopping {
-    fn new(drain: Duration, log: LogQueue) -> Stopping {
-        Stopping { allowed: drain + GRACE + LAST, end: Arc::default(), log }
-    }
-
-    /// The deadline, which is counted from the first call. What has not ended then ends with the process: all that was
-    /// acknowledged is stored.
-    fn begin(&self) -> Instant {
-        *self.end.get_or_init(|| {
-            let (allowed, log) = (self.allowed, self.log.clone());
-            // Without a thread for it the stop takes as long as its parts do.
-            let _ = thread::Builder::new().name("stop".to_owned()).spawn(move || {
-                thread::sleep(allowed);
-                tracing::warn!("the stop has taken too long: the process ends now");
-                log.finish(Instant::now() + Duration::from_millis(50));
-                std::process::exit(0);
-            });
-            Instant::now() + allowed
-        })
-    }
 }
 
 impl Serve {
@@ -389,21 +332,17 @@ async fn listen(
     demo: Option<Demo>,
     access: Access,
     tls: Option<Tls>,
-    (files, reload): (Vec<PathBuf>, impl Fn() + Send + 'static),
+    ((files, reload), hangup): ((Vec<PathBuf>, impl Fn() + Send + 'static), Signal),
     store: Arc<dyn Store>,
-    (signals, stopping): (Signals, Stopping),
+    (mut signals, stopping): (StopSignals, Stopping),
 ) -> Result<(), String> {
     let address = options.listen;
     let listener = TcpListener::bind(address).await.map_err(|error| cannot_listen(address, &error))?;
     let address = listener.local_addr().map_err(|error| format!("cannot listen on {address}: {error}"))?;
-    let Signals { mut terminate, mut interrupt, hangup } = signals;
     let stop = {
         let stopping = stopping.clone();
         async move {
-            tokio::select! {
-                _ = terminate.recv() => {}
-                _ = interrupt.recv() => {}
-            }
+            signals.wait().await;
             stopping.begin();
         }
     };
