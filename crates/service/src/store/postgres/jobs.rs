@@ -17,7 +17,7 @@ use super::PostgresStore;
 use super::client_pool::{ANSWER, ClientPool, LONG_ANSWER, Parameter, existed, long_rows, rows, with_retries};
 use super::columns::{Receipts, from_bigint, reader, split_time, to_bigint};
 use super::fault::Fault;
-use super::sql;
+use super::sql::jobs as sql;
 use super::transactions::{InDoubt, begin};
 
 /// Jobs that one statement deletes: their results are large.

@@ -323,7 +323,7 @@ impl Store for PostgresStore {
     async fn check_integrity(&self) -> Result<Vec<String>> {
         let orphans = self.pool.rows(sql::ORPHANED_MOVES, &[]).await?;
         let line = |id: Uuid| format!("moves of contact {id} are stored, but the contact is not");
-        let jobs = self.pool.rows(sql::JOB_FAULTS, &[]).await?;
+        let jobs = self.pool.rows(sql::jobs::JOB_FAULTS, &[]).await?;
         let receipts = self.pool.rows(sql::RECEIPT_FAULTS, &[]).await?;
         let texts = jobs.iter().chain(&receipts).map(|row| row.get(0));
         Ok(orphans.iter().map(|row| line(row.get(0))).chain(texts).collect())
