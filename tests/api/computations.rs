@@ -82,7 +82,13 @@ async fn the_typed_client_has_every_computation() {
             let typed = server.client.$method(&serde_json::from_value(example.clone()).unwrap()).await.unwrap();
             let plain: Value = server.post($path, &example).await.json().await.unwrap();
             assert_eq!(timeless(json!(typed)), timeless(plain), $path);
-        })*};
+        })*
+            let mut routes: Vec<&str> = entries().iter().filter_map(|entry| Some(entry.about.route?.path)).collect();
+            for path in [$($path),*] {
+                routes.retain(|route| *route != path);
+            }
+            assert!(routes.is_empty(), "the typed client has no {routes:?}");
+        };
     }
     agree!("/simulate" simulate, "/accuracy" accuracy, "/protocols" protocol, "/cycle" cycle, "/fretting" fretting,
         "/wear" wear, "/sliders" sliders, "/rolling" rolling, "/profiles/fit" fit_profile, "/fit" fit_loops);

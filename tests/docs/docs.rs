@@ -171,6 +171,20 @@ fn every_test_that_verification_names_exists() {
     assert!(named > 250, "{named} tests are named");
 }
 
+/// Recipes name a file by its path, or by the end of it.
+#[test]
+fn every_source_file_that_the_architecture_names_exists() {
+    let sources: Vec<PathBuf> =
+        ["crates", "src", "tests"].iter().flat_map(|folder| rust_files(&file(folder))).collect();
+    let text = std::fs::read_to_string(file("ARCHITECTURE.md")).unwrap();
+    let codes = text.split('`').filter_map(|code| code.split("::").next());
+    let named: BTreeSet<&str> = codes.filter(|code| code.ends_with(".rs") && !code.contains("NAME")).collect();
+    assert!(named.len() > 100, "{} files are named", named.len());
+    for path in named {
+        assert!(sources.iter().any(|source| source.ends_with(path)), "ARCHITECTURE.md names {path}");
+    }
+}
+
 /// A filter that matches nothing runs no test, and Cargo calls that a success.
 #[test]
 fn every_filter_of_a_test_command_finds_a_test() {
