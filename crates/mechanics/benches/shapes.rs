@@ -123,7 +123,7 @@ fn hoops(virgin: &Contact) -> Duration {
     let mut contact = virgin.clone();
     twist(&mut contact, 0.0, full);
     let start = Instant::now();
-    falling_amplitude(REVERSALS, 1.0).into_iter().for_each(|part| twist(&mut contact, part, full));
+    falling_amplitude(REVERSALS, 1.0).for_each(|part| twist(&mut contact, part, full));
     black_box(contact.hoops(&radii));
     start.elapsed()
 }
