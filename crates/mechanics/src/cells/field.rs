@@ -300,11 +300,19 @@ impl WeightedCells<'_> {
 
     /// Adds what parts of a cell do at radii that are near.
     fn add_parts_near(&self, parts: &[Part], kernel: Kernel, radii: &[Held], sums: &mut [SumAndSize]) {
+        // Radii beyond a part have no share of its kernels.
+        let inside = |span: &Span| radii.partition_point(|held| span.excess(held.at.square).1 > 0.0);
         for (index, span, weight) in parts.iter().filter(|part| part.2.abs() > 0.0) {
             let cell = &self.cells.cells[*index];
             match kernel {
-                Kernel::Root => add_near::<false>(cell, span, *weight, radii, sums),
-                Kernel::RootSlope => add_near::<true>(cell, span, *weight, radii, sums),
+                Kernel::Root => {
+                    let inside = inside(span);
+                    add_near::<false>(cell, span, *weight, &radii[..inside], &mut sums[..inside]);
+                }
+                Kernel::RootSlope => {
+                    let inside = inside(span);
+                    add_near::<true>(cell, span, *weight, &radii[..inside], &mut sums[..inside]);
+                }
                 Kernel::Arccos | Kernel::Arcsin => {
                     for (held, sum) in radii.iter().zip(&mut *sums) {
                         add_to(sum, weight * kernel.near(cell, &held.at, span));
