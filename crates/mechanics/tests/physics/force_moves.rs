@@ -1,13 +1,17 @@
-//! Moves by force: undone to the last bit where they fail, and refused nowhere where the force zero is all there is.
+//! Moves by force: undone to the last bit where they fail, refused nowhere where the force zero is all there is, and no
+//! longer after a long history.
 
 use std::cell::Cell;
+use std::time::Instant;
 
 use proptest::prelude::any;
-use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle};
+use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle, best_load};
+use stickslip_mechanics::profile::{Sum, Tabulated};
+use stickslip_mechanics::protocol::falling_amplitude;
 use stickslip_mechanics::rings::{self, PlanarMove, PlanarTarget};
-use stickslip_mechanics::{Contact, Error, Move, Normal, Springs, Tangential};
+use stickslip_mechanics::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Springs, Tangential};
 
-use super::support::{Ball, PLAIN, Random, forall};
+use super::support::{Ball, PLAIN, Random, displace, forall, sphere};
 
 fn by_force(target: f64) -> Move {
     Move { tangential: Some(Tangential::Force(target)), ..Move::default() }
@@ -117,4 +121,65 @@ fn a_load_that_is_carried_already_is_no_change_of_it() {
     let normal = Some(Normal::NormalForce(load));
     same.apply(&Move { tangential: Some(target), normal, ..Move::default() }).unwrap();
     assert_eq!(same.pack(), contact.pack());
+}
+
+/// The least time of a piece of work, s, in some rounds, so that other work on the machine hardly counts.
+fn least_time(mut work: impl FnMut()) -> f64 {
+    let once = |_| {
+        let begin = Instant::now();
+        work();
+        begin.elapsed().as_secs_f64()
+    };
+    (0..9).map(once).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn moves_by_force_and_best_loads_do_no_more_after_a_hundred_thousand_reversals() {
+    let times = [10, 100_000].map(|reversals| {
+        let mut contact = PLAIN.contact();
+        let (full, limit) = (contact.gross_slip_displacement(), contact.friction() * contact.normal_force());
+        for target in falling_amplitude(reversals, full) {
+            contact.apply(&displace(target)).unwrap();
+        }
+        let here = contact.force();
+        let moves = least_time(|| {
+            for _ in 0..50 {
+                contact.apply(&by_force(here + 1e-9 * limit)).unwrap();
+                contact.apply(&by_force(here - 1e-9 * limit)).unwrap();
+            }
+        });
+        let load = least_time(|| {
+            best_load(&contact, Drive::Displacement(0.3 * full), 0.0, &|| true).unwrap();
+        });
+        [moves, load]
+    });
+    // A copy of the history takes a thousand times as long as a move.
+    for (work, (few, many)) in ["moves", "best load"].into_iter().zip(times[0].into_iter().zip(times[1])) {
+        assert!(many < 20.0 * few, "{work}: {few:e} s and {many:e} s");
+    }
+}
+
+#[test]
+fn gross_slip_of_a_sum_does_no_more_for_each_point_of_its_table() {
+    let times = [100, 10_000].map(|points| {
+        let radii: Vec<f64> = (0..points).map(|index| 1e-3 * f64::from(index) / f64::from(points)).collect();
+        let heights: Vec<f64> = radii.iter().map(|r| 40.0 * r * r).collect();
+        let table = Profile::Tabulated(Tabulated::new(&radii, &heights).unwrap());
+        let profile = Profile::Sum(Sum::new(vec![sphere(0.02), table]).unwrap());
+        let mut contact = Contact::new(Setup {
+            profile,
+            elasticity: Elasticity::effective(1.13e11, 8.9e10).unwrap(),
+            friction: 0.31,
+            preload: Preload::ContactRadius(8e-4),
+        })
+        .unwrap();
+        let full = contact.gross_slip_displacement();
+        least_time(|| {
+            for _ in 0..200 {
+                contact.apply(&displace(2.0 * full)).unwrap();
+                contact.apply(&displace(-2.0 * full)).unwrap();
+            }
+        })
+    });
+    assert!(times[1] < 8.0 * times[0], "{times:?} s");
 }
