@@ -16,7 +16,7 @@ use std::time::Duration;
 
 use hyper::server::conn::http1;
 use hyper::service::service_fn;
-use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::rt::TokioIo;
 #[cfg(target_os = "linux")]
 use socket2::SockRef;
 use tokio::io::{AsyncRead, AsyncWrite};
@@ -147,8 +147,7 @@ async fn serve_connection<S: AsyncRead + AsyncWrite + Unpin>(
     let stream = TokioIo::new(Socket::new(stream, Arc::clone(&activity)));
     let answer = service_fn(|request| Arc::clone(&service).serve(Arc::clone(&activity), spare, peer, request));
     let mut http = http1::Builder::new();
-    http.timer(TokioTimer::new()).header_read_timeout(limits.idle);
-    http.keep_alive(!spare).max_header_size(HEAD).max_buf_size(BUFFER);
+    http.header_read_timeout(None).keep_alive(!spare).max_header_size(HEAD).max_buf_size(BUFFER);
     let mut connection = pin!(http.serve_connection(stream, answer));
     let mut check = pin!(sleep(limits.shortest()));
     let mut shutting_down = false;

@@ -41,7 +41,7 @@ struct State {
 /// What a client has taken too long for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Late {
-    /// To send the head of a request.
+    /// To send the head of a request, or to begin it.
     Head,
     /// To read a reply.
     Reply,
@@ -104,7 +104,7 @@ impl ConnectionActivity {
         self.state.lock().blocked_since = None;
     }
 
-    /// When to check the client next. The HTTP library times idle connections itself.
+    /// When to check the client next.
     ///
     /// # Errors
     /// [`Late`] if it has taken too long.
@@ -123,7 +123,8 @@ impl ConnectionActivity {
             }
             (Some(since), _) => (since + limits.stall, Late::Reply),
             (None, Phase::Head) => (state.since + limits.head, Late::Head),
-            (None, Phase::Idle | Phase::Busy) => (soon, Late::Reply),
+            (None, Phase::Idle) => (state.since + limits.idle, Late::Head),
+            (None, Phase::Busy) => (soon, Late::Reply),
             (None, Phase::Closing) => (now, Late::Head),
         };
         let due = state.due.map_or(due, |whole| whole.min(due));
@@ -175,6 +176,16 @@ mod tests {
         assert_eq!(kept(120_000), Some(600));
         assert_eq!(kept(LEAST_PROGRESS / 30 + 1), Some(600));
         assert_eq!(kept(LEAST_PROGRESS / 32), Some(30));
+    }
+
+    #[test]
+    fn a_connection_without_a_request_is_kept_for_a_minute() {
+        let (activity, limits) = (ConnectionActivity::new(), ConnectionLimits::default());
+        assert!(activity.begin_request());
+        activity.end_request();
+        let end = Instant::now();
+        assert!(activity.next_check_at(end + limits.idle - Duration::from_secs(1), &limits).is_ok());
+        assert_eq!(activity.next_check_at(end + limits.idle, &limits), Err(Late::Head));
     }
 
     #[test]

@@ -1,11 +1,10 @@
 //! Connections: how many are admitted, how long a client may take, and which are closed to make room.
 //!
 //! The limiter (`limiter.rs`) admits a bounded number. A client that sends nothing, or reads nothing of a reply, is
-//! timed by what its connection is doing (`activity.rs`), as the socket and the service record it; the HTTP library
-//! times idle connections. When all places are taken, connections that have waited longest for their clients are
-//! closed, those of the client with the most connections first; connections that are being served are never closed. If
-//! none can be closed, a few spare connections still answer for the health of the server, and refuse everything else
-//! with a document.
+//! timed by what its connection is doing (`activity.rs`), as the socket and the service record it. When all places are
+//! taken, connections that have waited longest for their clients are closed, those of the client with the most
+//! connections first; connections that are being served are never closed. If none can be closed, a few spare
+//! connections still answer for the health of the server, and refuse everything else with a document.
 
 mod activity;
 mod bodies;
@@ -51,7 +50,7 @@ pub struct ConnectionLimits {
 impl ConnectionLimits {
     /// The shortest of the times that [`ConnectionActivity`] measures.
     pub(crate) fn shortest(&self) -> Duration {
-        self.head.min(self.stall)
+        self.head.min(self.stall).min(self.idle)
     }
 }
 
