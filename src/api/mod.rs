@@ -21,7 +21,10 @@ use std::future::Future;
 use std::sync::{Arc, LazyLock};
 
 use axum::Router;
+use axum::extract::Request;
 use axum::middleware::from_fn_with_state;
+use axum::response::Response;
+use futures::future::BoxFuture;
 use tokio::net::TcpListener;
 use tokio::sync::watch;
 use tower::ServiceBuilder;
@@ -29,13 +32,14 @@ use utoipa_axum::router::OpenApiRouter;
 use utoipa_axum::routes;
 
 use crate::access::Role;
+use crate::admission::UnderWay;
+use crate::server::connections::{Answer, Arrival};
 use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use stickslip_compute::computations::entries;
 
 use facts::{Facts, Routes};
-use middleware::request_log::{serve as serve_request, serve_across};
-use middleware::security_headers;
+use middleware::{request_log, security_headers};
 use request_context::Reception;
 use request_metrics::RequestMetrics;
 use resources::{
@@ -74,9 +78,10 @@ pub async fn serve_within(
         stops,
         crosses_origins: !app.access.origins.is_empty(),
     };
+    let (hosts, reception) = (app.access.hosts.clone(), Arc::new(reception));
     let service = Service {
-        hosts: app.access.hosts.clone(),
-        router: router(app, reception),
+        hosts,
+        api: Box::new(Api { router: router(app, &reception), reception }),
         body_time: limiter.limits.body,
         proxies: Arc::clone(&limiter.proxies),
         stopping,
@@ -89,19 +94,30 @@ pub async fn serve_within(
     .await;
 }
 
-/// All routes, with what is around every handler.
-fn router(app: App, reception: Reception) -> Router {
+/// All routes, and what is around them.
+struct Api {
+    router: Router,
+    reception: Arc<Reception>,
+}
+
+impl Answer for Api {
+    fn answer(&self, arrival: Arrival, request: Request) -> BoxFuture<'_, (Response, UnderWay)> {
+        Box::pin(request_log::serve(&self.reception, &self.router, arrival, request))
+    }
+}
+
+/// All routes.
+fn router(app: App, reception: &Arc<Reception>) -> Router {
     let (api, _) = described().router.split_for_parts();
-    let (origins, reception) = (Arc::clone(&app.access.origins), Arc::new(reception));
+    let origins = Arc::clone(&app.access.origins);
     let all = api.with_state(Arc::new(app)).merge(page::routes()).fallback(meta::not_found);
     if origins.is_empty() {
-        return all.layer(from_fn_with_state(reception, serve_request));
+        return all;
     }
     let layers = ServiceBuilder::new()
-        .layer(from_fn_with_state(Arc::clone(&reception), serve_request))
         // Before keys are asked for: a browser asks whether it may send one.
         .layer(security_headers::cross_origin(&origins))
-        .layer(from_fn_with_state(reception, serve_across));
+        .layer(from_fn_with_state(Arc::clone(reception), request_log::serve_across));
     all.layer(layers)
 }
 
@@ -111,11 +127,26 @@ pub fn document() -> &'static str {
     &DOCUMENT
 }
 
+/// What is known of the routes.
+static FACTS: LazyLock<Vec<(&str, String, Facts)>> = LazyLock::new(|| described().facts);
+
+/// The route of a path, by the rules of the router.
+pub fn route_of(path: &str) -> Option<&'static str> {
+    static ROUTES: LazyLock<matchit::Router<&str>> = LazyLock::new(|| {
+        let mut routes = matchit::Router::new();
+        for route in FACTS.iter().map(|(_, route, _)| route.as_str()).chain(page::ROUTES) {
+            // A route stands there once for each of its methods.
+            let _ = routes.insert(route, route);
+        }
+        routes
+    });
+    ROUTES.at(path).ok().map(|found| *found.value)
+}
+
 /// The role that a method on a route needs, if it needs a key: the highest one, where nothing is known of it.
 pub fn need(method: &str, route: &str) -> Option<Role> {
     let method = if method == "HEAD" { "GET" } else { method };
-    static FACTS: LazyLock<Vec<(&str, String, Facts)>> = LazyLock::new(|| described().facts);
-    if method == "GET" && (route == page::PAGE || route == page::FILES || page::DOCS.contains(&route)) {
+    if method == "GET" && page::ROUTES.contains(&route) {
         return None;
     }
     let known = FACTS.iter().find(|(known, path, _)| *known == method && path == route);

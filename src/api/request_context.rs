@@ -45,7 +45,7 @@ pub struct RequestContext {
     /// Its identifier, for the log and the client.
     pub id: HeaderValue,
     /// The address of the client.
-    pub address: Option<IpAddr>,
+    pub address: IpAddr,
     /// The holder of its key, if it presented one that allows this.
     pub holder: Option<Arc<Holder>>,
     /// The meters of its route.
@@ -65,9 +65,14 @@ pub struct RequestContext {
 
 impl RequestContext {
     /// The context of a request to a route, with what tells the work for it to end.
-    pub fn of(reception: &Reception, request: &Request, route: Option<&str>) -> (Arc<RequestContext>, UnderWay) {
+    pub fn of(
+        reception: &Reception,
+        arrival: Arrival,
+        request: &Request,
+        route: Option<&str>,
+    ) -> (Arc<RequestContext>, UnderWay) {
         let (method, headers) = (request.method(), request.headers());
-        let arrival = request.extensions().get::<Arrival>();
+        let Arrival { address, body_time, refusal, spare } = arrival;
         let always = ALWAYS_ANSWERED.contains(&request.uri().path());
         let known = match &reception.keys {
             Some(keys) => access_control::identify(&keys.borrow(), headers, method, route.unwrap_or_default()),
@@ -77,13 +82,12 @@ impl RequestContext {
             Ok(holder) => (holder, None),
             Err(problem) => (None, Some(problem)),
         };
-        let client = match (&holder, arrival) {
-            (Some(holder), _) => Client::Tenant(holder.tenant.clone()),
-            (None, Some(arrival)) => Client::of_address(arrival.address),
-            (None, None) => Client::Server,
+        let client = match &holder {
+            Some(holder) => Client::Tenant(holder.tenant.clone()),
+            None => Client::of_address(address),
         };
-        let mut refusal = arrival.and_then(|arrival| arrival.refusal).map(Problem::from);
-        if !always && arrival.is_some_and(|arrival| arrival.spare) {
+        let mut refusal = refusal.map(Problem::from);
+        if spare && !always {
             refusal = refusal.or_else(|| Some(Refusal::Full(PoolError::Busy).into()));
         }
         refusal = refusal.or(unknown);
@@ -96,11 +100,11 @@ impl RequestContext {
         let under_way = Admission::begin(&reception.pool, client, share);
         let context = RequestContext {
             id: request_id(headers),
-            address: arrival.map(|arrival| arrival.address),
+            address,
             holder,
             meters: reception.metrics.of_request(route, method),
             metrics: Arc::clone(&reception.metrics),
-            body_time: arrival.map_or(Duration::MAX, |arrival| arrival.body_time),
+            body_time,
             admission: Arc::clone(under_way.admission()),
             refusal,
             waits_at_door: !always && !matches!(*method, Method::POST | Method::PATCH | Method::PUT),

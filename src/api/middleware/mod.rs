@@ -1,4 +1,4 @@
-//! The middleware around every handler, one layer per file.
+//! What is around every handler, one file each.
 
 pub mod access_control;
 pub mod compression;

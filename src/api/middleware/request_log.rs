@@ -6,20 +6,23 @@ use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Instant;
 
+use axum::Router;
 use axum::body::{Body, BodyDataStream, Bytes};
-use axum::extract::{MatchedPath, Request, State};
-use axum::http::{HeaderValue, Method, StatusCode, header};
+use axum::extract::{Request, State};
+use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 use futures::stream::{self, PollNext};
 use futures::{FutureExt as _, Stream, StreamExt as _};
 use http_body::Body as _;
 use stickslip_wire::{EndEvent, EndReason, ProblemDocument};
+use tower_service::Service as _;
 use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
 use uuid::Uuid;
 
 use crate::access::Role;
+use crate::admission::UnderWay;
 use crate::api;
 use crate::api::middleware::access_control::revoked;
 use crate::api::middleware::{compression, security_headers};
@@ -30,6 +33,10 @@ use crate::api::request_metrics::{ABANDONED, NONE};
 use crate::api::resources::{meta, page};
 use crate::metrics::Counted;
 use crate::otlp;
+use crate::server::connections::Arrival;
+
+/// What a request is a part of, as its client says (W3C Trace Context).
+const TRACEPARENT: HeaderName = HeaderName::from_static("traceparent");
 
 /// What a stream of events consists of.
 type EventBytes = Result<Bytes, axum::Error>;
@@ -57,16 +64,20 @@ struct Outcome {
 }
 
 /// Serves a request, from its head to the head of its reply: makes its context, has it admitted and answered, and adds
-/// what is common to every reply. One layer, because each puts the request and its answer into a box.
-pub async fn serve(State(reception): State<Arc<Reception>>, mut request: Request, next: Next) -> Response {
+/// what is common to every reply. A function around the router: each layer puts the request and its answer into boxes.
+pub async fn serve(
+    reception: &Reception,
+    router: &Router,
+    arrival: Arrival,
+    mut request: Request,
+) -> (Response, UnderWay) {
     let start = Instant::now();
     // The route rather than the path: it holds no identifier, and cannot be made up by clients.
-    let route = request.extensions().get::<MatchedPath>().cloned();
-    let route = route.as_ref().map(MatchedPath::as_str);
-    let (context, under_way) = RequestContext::of(&reception, &request, route);
+    let route = api::route_of(request.uri().path());
+    let (context, under_way) = RequestContext::of(reception, arrival, &request, route);
     let _in_flight = Counted::by(&context.meters.in_flight);
     let method = request.method().clone();
-    let part_of = request.headers().get("traceparent");
+    let part_of = request.headers().get(TRACEPARENT);
     let traceparent = part_of.filter(|value| value.len() <= request_limits::REQUEST_ID_LENGTH).cloned();
     let accepted = compression::accepted(request.headers());
     let changes = !matches!(method, Method::GET | Method::HEAD | Method::OPTIONS);
@@ -82,8 +93,13 @@ pub async fn serve(State(reception): State<Arc<Reception>>, mut request: Request
     };
     request.extensions_mut().insert(Arc::clone(&context));
     let mut stops = reception.stops.clone();
+    if method == Method::HEAD {
+        // As the router would: but its body is taken away at the end, when all headers say what it would be.
+        *request.method_mut() = Method::GET;
+    }
     let answer = async {
-        if reception.crosses_origins { next.run(request).await } else { admitted(&reception, request, next).await }
+        let answer = router.clone().call(request).map(|Ok(reply)| reply);
+        if reception.crosses_origins { answer.await } else { admitted(reception, &context, answer).await }
     };
     let answer = AssertUnwindSafe(answer.instrument(guard.span.clone())).catch_unwind();
     let mut response = tokio::select! {
@@ -124,21 +140,26 @@ pub async fn serve(State(reception): State<Arc<Reception>>, mut request: Request
         let _ = context.reserve(kept).await;
     }
     response = compression::compress(response, accepted, &reception.pool, &context.admission).await;
-    response.extensions_mut().insert(under_way);
-    response
+    if method == Method::HEAD {
+        if let Some(length) = response.body().size_hint().exact() {
+            response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
+        }
+        *response.body_mut() = Body::empty();
+    }
+    (response, under_way)
 }
 
 /// Serves a request within pages of other origins, whose preflight requests have been answered before.
 pub async fn serve_across(State(reception): State<Arc<Reception>>, request: Request, next: Next) -> Response {
-    admitted(&reception, request, next).await
+    let Some(context) = request.extensions().get::<Arc<RequestContext>>().cloned() else {
+        return Problem::internal("a request came without its context").into_response();
+    };
+    admitted(&reception, &context, next.run(request)).await
 }
 
 /// Serves a request that is not refused, once it has its permit; one with a body gets that when the body has arrived.
 /// Events end with the key.
-async fn admitted(reception: &Reception, request: Request, next: Next) -> Response {
-    let Some(context) = request.extensions().get::<Arc<RequestContext>>().cloned() else {
-        return Problem::internal("a request came without its context").into_response();
-    };
+async fn admitted(reception: &Reception, context: &RequestContext, answer: impl Future<Output = Response>) -> Response {
     if let Some(problem) = &context.refusal {
         return problem.clone().into_response();
     }
@@ -148,7 +169,7 @@ async fn admitted(reception: &Reception, request: Request, next: Next) -> Respon
     {
         return Problem::from(refused).into_response();
     }
-    let response = Arc::clone(admission).serve(next.run(request)).await;
+    let response = Arc::clone(admission).serve(answer).await;
     let kind = response.headers().get(header::CONTENT_TYPE);
     if !kind.is_some_and(|kind| kind.as_bytes().starts_with(b"text/event-stream")) {
         return response;
@@ -212,7 +233,7 @@ impl Drop for RequestGuard<'_> {
         }
         let request_id = context.id.to_str().unwrap_or_default();
         let (route, duration_ms) = (self.route.unwrap_or(NONE), time.as_secs_f64() * 1e3);
-        let (client, contact) = (context.address.map(display), contact.map(display));
+        let (client, contact) = (display(context.address), contact.map(display));
         let (key, tenant) = context.holder.as_ref().map(|holder| (&*holder.name, holder.tenant.name())).unzip();
         /// The fields that all lines have, and more.
         macro_rules! line {

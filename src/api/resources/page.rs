@@ -20,7 +20,10 @@ pub const PAGE: &str = "/";
 pub const FILES: &str = "/page/{name}";
 
 /// The paths of the documentation: with the slash that a folder may have, it is the page, and then its files.
-pub const DOCS: [&str; 3] = ["/docs", "/docs/", "/docs/{*rest}"];
+const DOCS: [&str; 3] = ["/docs", "/docs/", "/docs/{*rest}"];
+
+/// All of these routes.
+pub const ROUTES: [&str; 5] = [PAGE, FILES, DOCS[0], DOCS[1], DOCS[2]];
 
 struct Asset {
     name: &'static str,

@@ -69,7 +69,7 @@ impl Drop for RequestInProgress {
 pub struct TrackedBody {
     pub(super) body: Body,
     /// For which request what it streams is computed, and what that holds until the body is dropped.
-    pub(super) under_way: Option<UnderWay>,
+    pub(super) under_way: UnderWay,
     /// What is left of a piece.
     pub(super) rest: Bytes,
     pub(super) _in_progress: RequestInProgress,
@@ -91,11 +91,7 @@ impl http_body::Body for TrackedBody {
             return Poll::Ready(Some(Ok(Frame::data(self.next_piece()))));
         }
         let TrackedBody { body, under_way, .. } = &mut *self;
-        let mut poll = || Pin::new(&mut *body).poll_frame(cx);
-        let polled = match under_way {
-            Some(under_way) => under_way.admission().within(poll),
-            None => poll(),
-        };
+        let polled = under_way.admission().within(|| Pin::new(&mut *body).poll_frame(cx));
         let Poll::Ready(frame) = polled else { return Poll::Pending };
         let Some(Ok(frame)) = frame else { return Poll::Ready(frame) };
         match frame.into_data() {

@@ -22,7 +22,7 @@ pub use limiter::{ConnectionCounts, ConnectionLimiter};
 pub use own_hosts::OwnHosts;
 pub(crate) use proxies::is_trusted;
 pub use proxies::network;
-pub use service::{Arrival, Refusal, Service};
+pub use service::{Answer, Arrival, Refusal, Service};
 pub(crate) use socket::Socket;
 
 /// Connections at a time by default.

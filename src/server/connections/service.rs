@@ -1,17 +1,16 @@
-//! Serves one request of a connection: says what is known of it when its head is read, and calls the router.
+//! Serves one request of a connection: says what is known of it when its head is read, and calls the API.
 
 use std::net::IpAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::Router;
 use axum::body::{Body, Bytes, HttpBody as _};
 use axum::http::{HeaderValue, Method, Request, Response, StatusCode, Version, header};
+use futures::future::BoxFuture;
 use hyper::body::Incoming;
 use ipnet::IpNet;
 use parking_lot::Mutex;
 use tokio::sync::watch;
-use tower_service::Service as _;
 
 use super::bodies::{RequestInProgress, SharedBody, TrackedBody, discard};
 use super::proxies;
@@ -42,10 +41,16 @@ pub enum Refusal {
     Foreign(&'static str),
 }
 
+/// What answers requests.
+pub trait Answer: Send + Sync + 'static {
+    /// The reply to a request, with what it holds until its last byte has been read.
+    fn answer(&self, arrival: Arrival, request: Request<Body>) -> BoxFuture<'_, (Response<Body>, UnderWay)>;
+}
+
 /// What serves the requests of all connections.
 pub struct Service {
-    /// All routes, which make the context of a request of its [`Arrival`].
-    pub router: Router,
+    /// What answers them.
+    pub api: Box<dyn Answer>,
     /// How long a body may take to arrive.
     pub body_time: Duration,
     /// By which names it may be called; any if none.
@@ -74,7 +79,7 @@ impl Service {
         let in_progress = RequestInProgress(activity);
         let (head, body) = request.into_parts();
         let body = SharedBody(Arc::new(Mutex::new(body)));
-        let mut request = Request::from_parts(head, Body::new(body.clone()));
+        let request = Request::from_parts(head, Body::new(body.clone()));
         let fault = ambiguity(&request);
         // A proxy may see the end of the chunks elsewhere.
         let mut last = fault.is_some() || request.headers().contains_key(header::TRANSFER_ENCODING);
@@ -88,8 +93,8 @@ impl Service {
         let foreign = || self.hosts.as_ref().and_then(|hosts| hosts.refuse(&request)).map(Refusal::Foreign);
         let refusal = fault.map(Refusal::Ambiguous).or_else(foreign);
         let address = proxies::client(peer, request.headers(), &self.proxies);
-        request.extensions_mut().insert(Arrival { address, body_time: self.body_time, refusal, spare });
-        let Ok(mut reply) = self.router.clone().call(request).await;
+        let arrival = Arrival { address, body_time: self.body_time, refusal, spare };
+        let (mut reply, under_way) = self.api.answer(arrival, request).await;
         // The next request of the connection begins after the body.
         if !body.is_end_stream() {
             readable &= reply.status() != StatusCode::REQUEST_TIMEOUT && !*self.stopping.borrow();
@@ -98,8 +103,7 @@ impl Service {
         if last {
             reply.headers_mut().insert(header::CONNECTION, HeaderValue::from_static("close"));
         }
-        let under_way = reply.extensions_mut().remove::<UnderWay>();
-        if under_way.as_ref().is_some_and(|under_way| under_way.admission().memory.class().is_some()) {
+        if under_way.admission().memory.class().is_some() {
             in_progress.0.begin_large_reply();
         }
         Ok(reply.map(|body| TrackedBody { body, under_way, rest: Bytes::new(), _in_progress: in_progress }))
