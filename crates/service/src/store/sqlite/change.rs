@@ -121,7 +121,12 @@ impl Transaction<'_> {
             }
         };
         let mut insert = self.database.prepare_cached(&INSERT_MOVE)?;
-        records.iter().try_for_each(|record| insert_move(&mut insert, number, record))?;
+        for (index, record) in records.iter().enumerate() {
+            if index > 0 {
+                insert.clear_bindings();
+            }
+            insert_move(&mut insert, number, record)?;
+        }
         Ok(Done::Made(0))
     }
 

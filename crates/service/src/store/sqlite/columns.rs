@@ -4,7 +4,8 @@ use std::error::Error;
 use std::str::FromStr as _;
 
 use jiff::Timestamp;
-use rusqlite::{CachedStatement, Connection, OptionalExtension as _, Params, Row, params, types::Type};
+use rusqlite::types::{ToSql, ToSqlOutput, Type, Value, ValueRef};
+use rusqlite::{CachedStatement, Connection, OptionalExtension as _, Params, Row, params};
 use uuid::Uuid;
 
 use crate::store::Record;
@@ -97,10 +98,10 @@ impl RowReader for Reader<'_, '_> {
     }
 }
 
-/// Writes a move of the contact with a number.
+/// Writes a move of the contact with a number, by a statement to which nothing is bound.
 pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, record: &Record) -> rusqlite::Result<()> {
     let Record { sequence, step, tolerance, state, measured, by, at } = record;
-    statement.execute(params![
+    let values: &[&dyn ToSql] = params![
         number,
         to_integer(*sequence)?,
         to_nanoseconds(*at)?,
@@ -131,8 +132,14 @@ pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, reco
         measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?,
         by.as_deref(),
         negative_zeros(record),
-    ])?;
-    Ok(())
+    ];
+    // What is not bound is NULL, and so is a third of the columns of most moves.
+    for (index, value) in (1..).zip(values) {
+        if !matches!(value.to_sql()?, ToSqlOutput::Owned(Value::Null) | ToSqlOutput::Borrowed(ValueRef::Null)) {
+            statement.raw_bind_parameter(index, value)?;
+        }
+    }
+    statement.raw_execute().map(drop)
 }
 
 /// The move of a row of [`MOVE_COLUMNS`].
