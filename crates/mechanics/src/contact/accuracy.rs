@@ -3,6 +3,7 @@
 use crate::contact::Contact;
 use crate::contact::normal::mean_pressure;
 use crate::contact::twist::Twist;
+use crate::springs::law::SpringLaw;
 
 /// A relative slope of g above this is the edge of a punch, whose radius is exact.
 const MAX_STEEPNESS: f64 = 1e4;
@@ -49,13 +50,14 @@ impl Contact {
             return contact.accuracy();
         }
         if let Some(bodies) = &self.viscoelastic {
-            let (path_error, force_error) = (bodies.path_error, bodies.force_error + bodies.path_error);
+            let path_error = bodies.rows.path_error;
+            let force_error = bodies.rows.force_error(&SpringLaw::Coulomb(self.material(&bodies.prony)));
             return ErrorEstimate { path_error, force_error, stress_error: 0.0 };
         }
         if let Some(Twist { springs: Some(springs), shear_modulus, .. }) = self.twist() {
             let law = self.twist_law(*shear_modulus);
             let unit = self.friction * self.summary().unit_pressure();
-            let force_error = springs.force_error(&law);
+            let force_error = springs.force_error(&SpringLaw::Twist(law));
             let stress_error = force_error + springs.hoop_error(&law) / unit;
             return ErrorEstimate { path_error: springs.path_error, force_error, stress_error };
         }

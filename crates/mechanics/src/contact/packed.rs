@@ -14,6 +14,8 @@
 //! | | and the sign of the error before it; |
 //! | | of bodies with memory their springs are in its place |
 
+use std::sync::Arc;
+
 use super::Contact;
 use super::adhesion::Bond;
 use super::law::Interface;
@@ -21,16 +23,18 @@ use super::twist::Twist;
 use crate::numerics::packing::{Packed, Reader};
 use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
-use crate::springs::twist::TwistSprings;
+use crate::springs::law::SpringLaw;
+use crate::springs::rows::Rows;
+use crate::viscoelastic::{SPRINGS, Viscoelastic};
 
 /// The version of the results of the engine. **Raise it with every change that alters a result in any bit**, for
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
 /// from their moves and agree with those that never were packed. `tests/physics/packed.rs` compares a digest of results
 /// for it.
-pub const ENGINE: u16 = 19;
+pub const ENGINE: u16 = 20;
 
 /// The version of the arrangement of the bytes.
-const LAYOUT: u16 = 3;
+const LAYOUT: u16 = 4;
 
 /// Writes the versions that bytes begin with.
 pub(crate) fn write_versions(bytes: &mut Vec<u8>) {
@@ -63,8 +67,8 @@ impl Contact {
     pub fn packed_length(&self) -> usize {
         let history = match self.law.as_deref() {
             None if self.viscoelastic.is_some() => 0,
-            Some(Interface { twist: Some(Twist { springs: Some(_), .. }), .. }) => {
-                3 * size_of::<f64>() + TwistSprings::packed_length()
+            Some(Interface { twist: Some(Twist { springs: Some(springs), .. }), .. }) => {
+                3 * size_of::<f64>() + springs.packed_length()
             }
             Some(Interface { twist: Some(twist), .. }) => 3 * size_of::<f64>() + twist.contact.history.packed_length(),
             Some(law) => {
@@ -74,7 +78,7 @@ impl Contact {
             }
             None => self.history.packed_length(),
         };
-        let bodies = self.viscoelastic.as_ref().map_or(0, |bodies| bodies.packed_length());
+        let bodies = self.viscoelastic.as_ref().map_or(0, |bodies| bodies.rows.packed_length());
         2 * size_of::<u16>() + 12 * size_of::<f64>() + history + bodies
     }
 
@@ -110,7 +114,7 @@ impl Contact {
                 law.tangential.iter().for_each(|contact| contact.history.pack(&mut bytes));
             }
             None => match &self.viscoelastic {
-                Some(bodies_with_memory) => bodies_with_memory.pack(&mut bytes),
+                Some(bodies_with_memory) => bodies_with_memory.rows.pack(&mut bytes),
                 None => self.history.pack(&mut bytes),
             },
         }
@@ -142,8 +146,9 @@ impl Contact {
         // The error of a stress may be without bound.
         (contact.path_error, contact.work_error, contact.path_kernel) = (reader.any()?, reader.any()?, reader.any()?);
         if let Some(bodies) = &self.viscoelastic {
-            let bodies = bodies.unpack(&mut reader, &self.indenter)?;
-            contact.viscoelastic = Some(Box::new(bodies));
+            let law = SpringLaw::Coulomb(self.material(&bodies.prony));
+            let rows = Rows::unpack(&mut reader, &law, SPRINGS)?;
+            contact.viscoelastic = Some(Box::new(Viscoelastic { prony: Arc::clone(&bodies.prony), rows }));
             let normal_force = contact.normal_force;
             contact.take_up_memory();
             contact.normal_force = normal_force;

@@ -73,7 +73,7 @@ impl Contact {
             return contact.force();
         }
         if let Some(bodies) = &self.viscoelastic {
-            return bodies.forces(&self.material())[1];
+            return bodies.rows.fine.sums[1];
         }
         2.0 * self.elasticity.g_star() * self.scale() * self.history.force()
     }
@@ -166,10 +166,11 @@ impl Contact {
     }
 
     /// The error that curved moves have left in the friction work, J: an estimate from above. What slips along a chord
-    /// in the place of the curve, and every move under a force that is off, adds to it.
+    /// in the place of the curve, and every move under a force that is off, adds to it. Of bodies with memory, that of
+    /// their springs on every path.
     #[must_use]
     pub fn work_error(&self) -> f64 {
-        self.work_error
+        self.viscoelastic.as_ref().map_or(self.work_error, |bodies| bodies.rows.work_error)
     }
 
     /// Contact radius a, m; half-width of a line contact; of a profile without a stress field as
@@ -177,7 +178,7 @@ impl Contact {
     #[must_use]
     pub fn contact_radius(&self) -> f64 {
         match &self.viscoelastic {
-            Some(bodies) => bodies.radius(&self.indenter),
+            Some(bodies) => self.radius_with_memory(bodies),
             None => self.indenter.edge_radius(self.history.edge()),
         }
     }
@@ -225,7 +226,7 @@ impl Contact {
         let springs = self.twist().and_then(|twist| twist.springs.as_ref()).map_or(0, |springs| springs.heap_bytes());
         own + springs
             + twist.or(self.tangential()).map_or(0, Contact::memory_bytes)
-            + self.viscoelastic.as_ref().map_or(0, |bodies| bodies.heap_bytes())
+            + self.viscoelastic.as_ref().map_or(0, |bodies| bodies.rows.heap_bytes())
     }
 
     /// The summary at the present normal load.

@@ -4,7 +4,7 @@
 //! ([`LimitShape`](crate::profile::LimitShape)): its displacement is the angle, rad, and its tangential force the
 //! torque, N m. It is made by the first twist, kept beside the contact, and gone when that lifts off. Twist couples
 //! with nothing, so that this is exact for any pair of isotropic bodies. Under a load that changes springs step it from
-//! then on ([`TwistSprings`]).
+//! then on ([`Rows`]).
 
 use std::sync::Arc;
 
@@ -22,7 +22,9 @@ use crate::range;
 use crate::range::Quantity;
 use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
-use crate::springs::twist::{TwistLaw, TwistPath, TwistSprings, gross_slip_torque};
+use crate::springs::law::SpringLaw;
+use crate::springs::rows::Rows;
+use crate::springs::twist::{SPRINGS, TwistLaw, TwistPath, gross_slip_torque};
 
 /// A contact of a smaller radius, m, carries no twist: the sixth power of the radius of its core is no number.
 const LEAST_RADIUS: f64 = 1e-40;
@@ -37,7 +39,7 @@ pub(crate) struct Twist {
     /// 1/G = 1/G_1 + 1/G_2, Pa.
     pub(crate) shear_modulus: f64,
     /// Once the load has changed: they answer in place of the contact.
-    pub(crate) springs: Option<Box<TwistSprings>>,
+    pub(crate) springs: Option<Box<Rows>>,
 }
 
 impl Twist {
@@ -223,9 +225,9 @@ impl Contact {
         let followed = law.twist.as_mut().map_or(Ok(self.dissipated), |twist| {
             let Some(springs) = &mut twist.springs else { return twist.at_constant_load(path) };
             let law = self.twist_law(twist.shear_modulus);
-            let before = springs.work();
-            springs.follow(&law, &|_| here, path, tolerance, keep_going)?;
-            Ok(self.dissipated + DoubleDouble::from(springs.work() - before))
+            let before = springs.fine.works[0];
+            springs.twist(&law, &|_| here, path, tolerance, keep_going)?;
+            Ok(self.dissipated + DoubleDouble::from(springs.fine.works[0] - before))
         });
         if followed.is_ok() || !is_new {
             self.law = Some(law);
@@ -236,7 +238,7 @@ impl Contact {
 
     fn angle_and_torque(&self, twist: &Twist) -> [f64; 2] {
         match &twist.springs {
-            Some(springs) => [springs.angle(), springs.results(&self.twist_law(twist.shear_modulus))[0]],
+            Some(springs) => [springs.fine.position, springs.fine.sums[1]],
             None => [twist.contact.displacement(), twist.contact.force()],
         }
     }
@@ -290,17 +292,17 @@ impl Contact {
                 twist.contact.history.deflection(DoubleDouble::from(level))
             };
             let angle = if carries { twist.contact.displacement() } else { 0.0 };
-            Box::new(TwistSprings::new(&law, [here.max(0.0), reach], angle, deflection))
+            Box::new(Rows::of_twist(&law, [here.max(0.0), reach], angle, deflection))
         });
-        let before = springs.work();
+        let before = springs.fine.works[0];
         let level = |part: f64| match normal {
             NormalPath::Indentation { to, .. } if part < 1.0 => here.max(0.0) + part * (to.value() - here.max(0.0)),
             NormalPath::Indentation { to, .. } => to.value(),
             NormalPath::Force { from, to } if part < 1.0 => self.indentation_for(from + part * (to - from)).value(),
             NormalPath::Force { .. } => end,
         };
-        springs.follow(&law, &level, path, tolerance, keep_going)?;
-        after.dissipated = after.dissipated + DoubleDouble::from(springs.work() - before);
+        springs.twist(&law, &level, path, tolerance, keep_going)?;
+        after.dissipated = after.dissipated + DoubleDouble::from(springs.fine.works[0] - before);
         if holds {
             after.path_error = springs.path_error;
             twist.springs = Some(springs);
@@ -314,7 +316,7 @@ impl Contact {
     pub(super) fn with_twist_of(mut self, reader: &mut Reader<'_>) -> Option<Contact> {
         let mut twist = self.new_twist().ok()?;
         if f64::unpack(reader)? > 0.0 {
-            let springs = TwistSprings::unpack(reader, &self.twist_law(twist.shear_modulus))?;
+            let springs = Rows::unpack(reader, &SpringLaw::Twist(self.twist_law(twist.shear_modulus)), SPRINGS)?;
             twist.springs = Some(Box::new(springs));
         } else {
             let history = SlipHistory::unpack(reader)?;
@@ -343,14 +345,15 @@ impl Contact {
     pub(super) fn with_twist(&self, state: State) -> State {
         let Some(Twist { contact, springs, shear_modulus, .. }) = self.twist() else { return state };
         if let Some(springs) = springs {
-            let [torque, elastic_energy] = springs.results(&self.twist_law(*shear_modulus));
+            let [_, angle, _, torque] = springs.fine.state();
+            let elastic_energy = springs.fine.energy(&SpringLaw::Twist(self.twist_law(*shear_modulus)));
             let (stick_radius, regime) = match springs.slip_from {
                 Some(from) if from <= 0.0 => (0.0, Regime::GrossSlip),
                 Some(from) if from < state.contact_radius => (from, Regime::PartialSlip),
                 _ => (state.contact_radius, Regime::Stick),
             };
             return State {
-                twist: Some(springs.angle()),
+                twist: Some(angle),
                 torque: Some(torque),
                 stick_radius,
                 regime,

@@ -10,7 +10,9 @@ use crate::range;
 use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
-use crate::viscoelastic::{Course, Leg, Material, Prony, Viscoelastic};
+use crate::springs::law::{CoulombLaw, SpringLaw};
+use crate::springs::rows::Rows;
+use crate::viscoelastic::{Course, Leg, Prony, SPRINGS, Viscoelastic};
 
 /// The least tolerance of springs, of the size of the error that their number leaves.
 pub(super) const LEAST_TOLERANCE: f64 = 1e-6;
@@ -51,14 +53,14 @@ impl Contact {
     /// the results are those of the springs alone, not of the half-space. Never of elastic bodies.
     #[must_use]
     pub fn beyond_annulus(&self) -> bool {
-        self.viscoelastic.as_ref().is_some_and(|bodies| bodies.beyond)
+        self.viscoelastic.as_ref().is_some_and(|bodies| bodies.rows.beyond)
     }
 
     /// Springs across the radius, and steps so far, if the bodies have memory or the load has changed under a twist.
     #[must_use]
     pub fn count_and_steps(&self) -> Option<(usize, usize)> {
         let twisted = self.twist().and_then(|twist| twist.springs.as_ref()).map(|rows| (rows.count(), rows.steps));
-        self.viscoelastic.as_ref().map(|bodies| (bodies.count(), bodies.steps)).or(twisted)
+        self.viscoelastic.as_ref().map(|bodies| (bodies.rows.count(), bodies.rows.steps)).or(twisted)
     }
 
     /// The tolerance of a move for one that was asked for: springs of memory or twist are not finer than 1e-6.
@@ -83,22 +85,31 @@ impl Contact {
         if self.law.is_some() {
             return Err(Error::Viscoelastic("`shear_strength`"));
         }
-        let (indentation, radius) = (self.indentation(), self.indenter.edge_radius(self.history.edge()));
-        self.viscoelastic = Some(Box::new(Viscoelastic::new(prony, &self.material(), indentation, radius)));
+        self.viscoelastic = Some(Box::new(self.pressed_with_memory(prony)));
         Ok(self)
     }
 
     /// Springs anew at the present load, as if it had been put on at once.
     pub(super) fn renew_memory(&mut self) {
-        let Some(prony) = self.viscoelastic.as_ref().map(|bodies| Arc::clone(&bodies.prony)) else { return };
-        let (indentation, radius) = (self.indentation(), self.indenter.edge_radius(self.history.edge()));
-        self.viscoelastic = Some(Box::new(Viscoelastic::new(prony, &self.material(), indentation, radius)));
+        let prony = self.viscoelastic.as_ref().map(|bodies| Arc::clone(&bodies.prony));
+        self.viscoelastic = prony.map(|prony| Box::new(self.pressed_with_memory(prony)));
     }
 
-    /// What its springs are made of.
-    pub(super) fn material(&self) -> Material<'_> {
+    fn pressed_with_memory(&self, prony: Arc<Prony>) -> Viscoelastic {
+        let start = [self.indentation(), self.indenter.edge_radius(self.history.edge())];
+        let rows = Rows::pressed(&self.material(&prony), SPRINGS, start);
+        Viscoelastic { prony, rows }
+    }
+
+    /// What its springs obey.
+    pub(super) fn material<'a>(&'a self, prony: &'a Prony) -> CoulombLaw<'a> {
         let stiffness = [2.0 * self.elasticity.e_star(), 2.0 * self.elasticity.g_star()];
-        Material { indenter: &self.indenter, stiffness, friction: self.friction }
+        CoulombLaw { indenter: &self.indenter, prony, stiffness, friction: self.friction }
+    }
+
+    /// The contact radius, m, of its springs.
+    pub(super) fn radius_with_memory(&self, bodies: &Viscoelastic) -> f64 {
+        bodies.rows.fine.radius(&SpringLaw::Coulomb(self.material(&bodies.prony)))
     }
 
     /// As [`Contact::apply_while`], with springs.
@@ -143,7 +154,8 @@ impl Contact {
         };
         let Some(mut bodies) = self.viscoelastic.take() else { return Ok(()) };
         let leg = Leg { normal, tangential, duration: step.duration };
-        let followed = bodies.follow(&self.material(), &leg, tolerance.max(LEAST_TOLERANCE), keep_going);
+        let Viscoelastic { prony, rows } = &mut *bodies;
+        let followed = rows.follow(&self.material(prony), &leg, tolerance.max(LEAST_TOLERANCE), keep_going);
         self.viscoelastic = Some(bodies);
         followed?;
         self.take_up_memory();
@@ -156,21 +168,21 @@ impl Contact {
     /// Takes indentation, displacement, load and work from the springs.
     pub(super) fn take_up_memory(&mut self) {
         let Some(bodies) = &self.viscoelastic else { return };
-        let (indentation, displacement) = (bodies.indentation(), bodies.displacement());
-        let [normal_force, _] = bodies.forces(&self.material());
-        let [dissipated, ..] = bodies.energies(&self.material());
+        let [indentation, displacement, normal_force, _] = bodies.rows.fine.state();
+        let (dissipated, path_error) = (bodies.rows.fine.works[0], bodies.rows.path_error);
         self.history = SlipHistory::new(&Coulomb(&self.indenter), DoubleDouble::from(indentation));
         self.displacement = DoubleDouble::from(displacement);
         self.dissipated = DoubleDouble::from(dissipated);
         self.normal_force = normal_force;
-        self.path_error = bodies.path_error;
+        self.path_error = path_error;
     }
 
     pub(super) fn state_with_memory(&self, bodies: &Viscoelastic) -> State {
-        let contact_radius = self.contact_radius();
-        let [dissipated_energy, work, elastic_energy] = bodies.energies(&self.material());
+        let (contact_radius, rows) = (self.contact_radius(), &bodies.rows);
+        let [dissipated_energy, work] = rows.fine.works;
+        let elastic_energy = rows.fine.energy(&SpringLaw::Coulomb(self.material(&bodies.prony)));
         let edge = |from: f64| from < contact_radius;
-        let (stick_radius, regime) = match bodies.slip_from {
+        let (stick_radius, regime) = match rows.slip_from {
             _ if self.normal_force <= 0.0 && contact_radius <= 0.0 && self.indentation().abs() > 0.0 => {
                 (0.0, Regime::Separated)
             }
@@ -191,10 +203,10 @@ impl Contact {
             regime,
             dissipated_energy,
             elastic_energy,
-            memory_depth: bodies.count(),
+            memory_depth: rows.count(),
             electrical_conductance: conductance.electrical,
             thermal_conductance: conductance.thermal,
-            time: Some(bodies.time),
+            time: Some(rows.time),
             viscous_work: Some((work - elastic_energy - dissipated_energy).max(0.0) + 0.0),
             surface_energy: None,
             adhesion_loss: None,

@@ -46,7 +46,7 @@ impl<'a> Stretch<'a> {
 }
 
 impl LimitShape {
-    /// Of the cells of a limit, which ends at a vertical edge if it is `upright`; `kinks` begin at the centre or a core.
+    /// Of the cells of a limit, that ends at a vertical edge if it is `upright`; `kinks` begin at a core or the centre.
     pub(super) fn new(
         (profile, scale): (&Arc<Profile>, f64),
         cells: Cells,

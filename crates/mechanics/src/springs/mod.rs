@@ -5,6 +5,9 @@
 //! order N^-2; stresses, from the piecewise linear displacement with an arcosh per cell, to order 1.5 to 2.
 
 mod estimate;
+pub(crate) mod law;
+pub(crate) mod row;
+pub(crate) mod rows;
 mod shear_evaluation;
 mod stress;
 pub(crate) mod twist;

@@ -6,6 +6,8 @@
 //! many modes as there are terms: the retardation times of the same material. The matrix of these is made symmetric by
 //! the scale sqrt(g_i T_i), and a mode of the rate k is v_i ~ 1/(1 - k T_i) with 1 = sum g_i/(1 - k T_i).
 
+use std::ops::Range;
+
 use crate::range;
 use crate::range::Quantity;
 use crate::range::error::Error;
@@ -34,6 +36,9 @@ pub struct Prony {
     modes: Vec<Mode>,
 }
 
+/// Bodies without a memory.
+pub(crate) static ELASTIC: Prony = Prony { terms: Vec::new(), modes: Vec::new() };
+
 /// A mode in which a free spring relaxes.
 #[derive(Clone, Debug, PartialEq)]
 struct Mode {
@@ -46,15 +51,18 @@ struct Mode {
 
 /// How springs move in a time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Kernel {
-    /// exp(-t/T_i), its mean over the time, and the mean of 1 less that mean so far.
+pub(crate) struct Kernel {
+    /// exp(-t/T_i), 1 less that, its mean over the time, and the mean of 1 less that mean so far.
     decay: [f64; MOST_TERMS],
+    gain: [f64; MOST_TERMS],
     mean: [f64; MOST_TERMS],
     late: [f64; MOST_TERMS],
     /// What is left of each mode.
     free: [f64; MOST_TERMS],
     /// The change of p for a change of w that comes evenly over the time.
-    pub(super) slope: f64,
+    pub(crate) slope: f64,
+    /// The mean of that change over the time.
+    middle: f64,
 }
 
 /// ```
@@ -126,34 +134,41 @@ impl Prony {
         self.relaxed() + self.terms.iter().map(|term| term.ratio * (-time / term.time).exp()).sum::<f64>()
     }
 
-    pub(super) fn kernel(&self, time: f64) -> Kernel {
+    pub(crate) fn kernel(&self, time: f64) -> Kernel {
         let ones = [1.0; MOST_TERMS];
-        let mut kernel = Kernel { decay: ones, mean: ones, late: [0.5; MOST_TERMS], free: ones, slope: 1.0 };
+        let (gain, late) = ([0.0; MOST_TERMS], [0.5; MOST_TERMS]);
+        let mut kernel = Kernel { decay: ones, gain, mean: ones, late, free: ones, slope: 1.0, middle: 0.5 };
         if time <= 0.0 {
             return kernel;
         }
         for (index, (term, mode)) in self.terms.iter().zip(&self.modes).enumerate() {
             let x = time / term.time;
             kernel.decay[index] = (-x).exp();
-            kernel.mean[index] = -(-x).exp_m1() / x;
+            kernel.gain[index] = -(-x).exp_m1();
+            kernel.mean[index] = kernel.gain[index] / x;
             kernel.late[index] = if x < SHORT { 0.5 - x / 6.0 + x * x / 24.0 } else { (1.0 - kernel.mean[index]) / x };
             kernel.free[index] = (-mode.rate * time).exp();
             kernel.slope -= term.ratio * (1.0 - kernel.mean[index]);
+            kernel.middle -= term.ratio * (0.5 - kernel.late[index]);
         }
         kernel
     }
 
     /// s, the deflection that the spring would keep if it were let go.
-    pub(super) fn kept(&self, v: &[f64]) -> f64 {
+    pub(crate) fn kept(&self, v: &[f64]) -> f64 {
+        self.kept_of(v.iter().copied())
+    }
+
+    pub(crate) fn kept_of(&self, v: impl Iterator<Item = f64>) -> f64 {
         let mut kept = 0.0;
-        for (v, term) in v.iter().zip(&self.terms) {
+        for (v, term) in v.zip(&self.terms) {
             kept += term.ratio * v;
         }
         kept
     }
 
     /// Moves along a straight line from one deflection to another; p after that.
-    pub(super) fn press(&self, kernel: &Kernel, v: &mut [f64], [from, to]: [f64; 2]) -> f64 {
+    pub(crate) fn press(&self, kernel: &Kernel, v: &mut [f64], [from, to]: [f64; 2]) -> f64 {
         let mut kept = 0.0;
         for (((v, term), mean), decay) in v.iter_mut().zip(&self.terms).zip(&kernel.mean).zip(&kernel.decay) {
             *v = to - (to - from) * mean - decay * (from - *v);
@@ -162,14 +177,8 @@ impl Prony {
         to - kept
     }
 
-    /// As [`Prony::press`], into another place.
-    pub(super) fn press_into(&self, kernel: &Kernel, v: &[f64], ways: [f64; 2], after: &mut [f64]) -> f64 {
-        after.copy_from_slice(v);
-        self.press(kernel, after, ways)
-    }
-
     /// p after that, without the move.
-    pub(super) fn pressed(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
+    pub(crate) fn pressed(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
         let mut kept = 0.0;
         for (((v, term), mean), decay) in v.iter().zip(&self.terms).zip(&kernel.mean).zip(&kernel.decay) {
             kept += term.ratio * (to - (to - from) * mean - decay * (from - v));
@@ -178,7 +187,7 @@ impl Prony {
     }
 
     /// The mean of p over that time.
-    pub(super) fn mean_of_p(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
+    pub(crate) fn mean_of_p(&self, kernel: &Kernel, v: &[f64], [from, to]: [f64; 2]) -> f64 {
         let middle = 0.5 * (from + to);
         let mut kept = 0.0;
         for (((v, term), mean), late) in v.iter().zip(&self.terms).zip(&kernel.mean).zip(&kernel.late) {
@@ -187,8 +196,47 @@ impl Prony {
         middle - kept
     }
 
+    /// Moves many springs by the same way, from deflections that are `first` and, times a sign, those of a list: the v_i
+    /// after that, term after term, and p.
+    pub(crate) fn follow(
+        &self,
+        kernel: &Kernel,
+        v: &[f64],
+        (first, sign, from): (f64, f64, &[f64]),
+        way: f64,
+        after: &mut [f64],
+        load: &mut [f64],
+    ) {
+        let (stride, load) = (load.len(), &mut load[..from.len()]);
+        load.iter_mut().zip(from).for_each(|(load, from)| *load = first + sign * from + way);
+        for (index, term) in self.terms.iter().enumerate() {
+            let (decay, gain) = (kernel.decay[index], sign * kernel.gain[index]);
+            let lead = kernel.gain[index] * first + way * (1.0 - kernel.mean[index]);
+            let (v, after) = (&v[index * stride..][..from.len()], &mut after[index * stride..][..from.len()]);
+            for (((v, after), from), load) in v.iter().zip(after).zip(from).zip(&mut *load) {
+                *after = decay * v + (gain * from + lead);
+                *load -= term.ratio * *after;
+            }
+        }
+    }
+
+    /// p of many springs before such a way, and its mean over it.
+    pub(crate) fn loads(&self, kernel: &Kernel, v: &[f64], from: &[f64], way: f64, [load, mean]: [&mut [f64]; 2]) {
+        let stride = load.len();
+        let (load, mean) = (&mut load[..from.len()], &mut mean[..from.len()]);
+        load.copy_from_slice(from);
+        mean.iter_mut().zip(from).for_each(|(mean, from)| *mean = kernel.slope * from + kernel.middle * way);
+        for (index, term) in self.terms.iter().enumerate() {
+            let share = term.ratio * kernel.mean[index];
+            for ((load, mean), v) in load.iter_mut().zip(&mut *mean).zip(&v[index * stride..]) {
+                *load -= term.ratio * v;
+                *mean -= share * v;
+            }
+        }
+    }
+
     /// Relaxes without a load.
-    pub(super) fn relax(&self, kernel: &Kernel, v: &mut [f64]) {
+    pub(crate) fn relax(&self, kernel: &Kernel, v: &mut [f64]) {
         let mut before = [0.0; MOST_TERMS];
         let before = &mut before[..v.len()];
         before.copy_from_slice(v);
@@ -199,14 +247,50 @@ impl Prony {
         }
     }
 
+    /// That as a matrix, row by row.
+    pub(crate) fn free_matrix(&self, kernel: &Kernel, matrix: &mut Vec<f64>) {
+        let terms = self.terms.len();
+        matrix.clear();
+        for place in 0..terms * terms {
+            let modes = self.modes.iter().zip(&kernel.free);
+            matrix.push(modes.map(|(mode, left)| mode.to[place / terms] * left * mode.of[place % terms]).sum());
+        }
+    }
+
+    /// Lets springs slide that are at a bound of `factor` times the p of others: v less that of these relaxes freely. The
+    /// v_i after that of `range`, and the deflection that they keep, from the v_i of both before and those of the
+    /// others after it.
+    pub(crate) fn slide(
+        &self,
+        matrix: &[f64],
+        (factor, range): (f64, Range<usize>),
+        [v, others, others_after]: [&[f64]; 3],
+        after: &mut [f64],
+        kept: &mut [f64],
+    ) {
+        let stride = kept.len();
+        let of = |list: usize| list * stride + range.start..list * stride + range.end;
+        kept[range.clone()].fill(0.0);
+        for ((index, term), row) in self.terms.iter().enumerate().zip(matrix.chunks_exact(self.terms.len())) {
+            let after = &mut after[of(index)];
+            after.iter_mut().zip(&others_after[of(index)]).for_each(|(after, other)| *after = factor * other);
+            for (from, share) in row.iter().enumerate() {
+                for ((after, v), other) in after.iter_mut().zip(&v[of(from)]).zip(&others[of(from)]) {
+                    *after += share * (v - factor * other);
+                }
+            }
+            kept[range.clone()].iter_mut().zip(after).for_each(|(kept, after)| *kept += term.ratio * *after);
+        }
+    }
+
     /// Twice the energy of a spring: w^2 without the share of the terms, and that of each.
-    pub(super) fn energy(&self, v: &[f64], w: f64) -> f64 {
+    pub(crate) fn energy(&self, v: &[f64], w: f64) -> f64 {
         let terms = self.terms.iter().zip(v).map(|(term, v)| term.ratio * (w - v) * (w - v));
         self.relaxed() * w * w + terms.sum::<f64>()
     }
 
     /// The shortest of its times, s.
-    pub(super) fn shortest_time(&self) -> f64 {
+    pub(crate) fn shortest_time(&self) -> f64 {
         self.terms[0].time
     }
 }

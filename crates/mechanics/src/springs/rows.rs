@@ -1,0 +1,167 @@
+//! Springs with a stated error: a row, and another of half as many that makes the same path in steps twice as long. The
+//! difference of the two is the error.
+
+use super::law::SpringLaw;
+use super::row::{Led, Row, Scratch, Slides};
+use crate::numerics::packing::{Packed, Reader};
+
+/// An error that says that nothing is known.
+const MOST_ERROR: f64 = 1e6;
+
+/// The springs of a contact.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rows {
+    pub(crate) fine: Row,
+    pub(crate) coarse: Row,
+    /// s.
+    pub(crate) time: f64,
+    /// The place from which on the last move slipped, m, if it did.
+    pub(crate) slip_from: Option<f64>,
+    pub(crate) beyond: bool,
+    pub(crate) steps: usize,
+    /// The largest normal force, N, and the largest force, N, or torque, N m, of gross slip.
+    pub(crate) largest: [f64; 2],
+    /// The largest errors of these, and of the friction work, J.
+    pub(super) errors: [f64; 2],
+    pub(crate) work_error: f64,
+    /// The part of the error that comes from paths that are straight in a force or torque, over that of gross slip.
+    pub(crate) path_error: f64,
+}
+
+impl Rows {
+    /// So many springs from the centre to the edge of a row at an indentation, m, that reaches a contact radius, m.
+    pub(crate) fn new(law: &SpringLaw<'_>, count: usize, [indentation, radius]: [f64; 2]) -> Rows {
+        let row = |count| Row::new(law, count, indentation, radius);
+        let numbers = [0.0; 2];
+        Rows {
+            fine: row(count),
+            coarse: row(count / 2),
+            time: 0.0,
+            slip_from: None,
+            beyond: false,
+            steps: 0,
+            largest: numbers,
+            errors: numbers,
+            work_error: 0.0,
+            path_error: 0.0,
+        }
+    }
+
+    /// Makes it equal to others without asking for memory.
+    pub(crate) fn take_from(&mut self, other: &Rows) {
+        self.fine.take_from(&other.fine);
+        self.coarse.take_from(&other.coarse);
+        let Rows { fine: _, coarse: _, time, slip_from, beyond, steps, largest, errors, work_error, path_error } =
+            *other;
+        (self.time, self.slip_from, self.beyond, self.steps) = (time, slip_from, beyond, steps);
+        (self.largest, self.errors, self.work_error, self.path_error) = (largest, errors, work_error, path_error);
+    }
+
+    /// Steps of the finer row to the ends of equal parts of a time, s, and one of the other row to the last of them.
+    /// The states of the finer row.
+    pub(crate) fn step<const N: usize>(
+        &mut self,
+        law: &SpringLaw<'_>,
+        time: f64,
+        targets: [[Led; 2]; N],
+        scratch: &mut [Scratch; 2],
+    ) -> Result<[[f64; 4]; N], (usize, Slides)> {
+        let (part, mut states) = (time / N as f64, [[0.0; 4]; N]);
+        for (index, target) in targets.into_iter().enumerate() {
+            let slipped = self.fine.step(law, part, target, &mut scratch[0]).map_err(|slides| (index, slides))?;
+            self.slip_from = self.slip_from.into_iter().chain(slipped.from).reduce(f64::min);
+            self.beyond |= slipped.beyond;
+            states[index] = self.fine.state();
+        }
+        self.coarse.step(law, time, targets[N - 1], &mut scratch[1]).map_err(|slides| (N - 1, slides))?;
+        self.steps += N;
+        Ok(states)
+    }
+
+    /// Takes the difference of the rows into the stated error.
+    pub(crate) fn note_difference(&mut self, law: &SpringLaw<'_>) {
+        let apart = self.difference(law);
+        let limits = [self.fine.sums[0], self.fine.limit(law)];
+        (0..2).for_each(|side| {
+            self.largest[side] = self.largest[side].max(limits[side]);
+            self.errors[side] = self.errors[side].max(apart[side]);
+        });
+        self.work_error = self.work_error.max((self.fine.works[0] - self.coarse.works[0]).abs());
+    }
+
+    /// The same, with what the number of springs must leave.
+    pub(crate) fn note_error(&mut self, law: &SpringLaw<'_>) {
+        self.note_difference(law);
+        let least = self.fine.least_errors(law);
+        (0..2).for_each(|side| self.errors[side] = self.errors[side].max(least[side]));
+    }
+
+    /// Of forces, N, or torques, N m.
+    fn difference(&self, law: &SpringLaw<'_>) -> [f64; 2] {
+        let (fine, coarse) = (&self.fine, &self.coarse);
+        let stiffness = law.stiffness(fine.radius(law));
+        let moved = [fine.indentation - coarse.indentation, fine.position - coarse.position];
+        [0, 1].map(|side| (fine.sums[side] - coarse.sums[side]).abs() + stiffness[side] * moved[side].abs())
+    }
+
+    /// The error of the forces or of the torque over the largest load and that of gross slip, for all states so far; of
+    /// a torque over the present one, too, if that is more.
+    pub(crate) fn force_error(&self, law: &SpringLaw<'_>) -> f64 {
+        let relative = |error: f64, limit: f64| if limit > 0.0 { (error / limit).min(MOST_ERROR) } else { 0.0 };
+        let present = match law {
+            SpringLaw::Twist(_) => {
+                let error = self.difference(law)[1].max(self.fine.least_errors(law)[1]);
+                relative(error, self.fine.limit(law))
+            }
+            SpringLaw::Coulomb(_) => relative(self.errors[0], self.largest[0]),
+        };
+        present.max(relative(self.errors[1], self.largest[1])) + self.path_error
+    }
+
+    /// Takes a part of a path into the stated errors along which the force is off, over that of gross slip, by `error`
+    /// while the contact moves by a `way`, m or rad.
+    pub(crate) fn note_path(&mut self, error: f64, way: f64) {
+        let error = error.min(MOST_ERROR);
+        self.path_error = self.path_error.max(error);
+        self.work_error += error * self.largest[1] * way.abs();
+    }
+
+    /// Springs from the centre to the edge of the row.
+    pub(crate) fn count(&self) -> usize {
+        self.fine.count()
+    }
+
+    pub(crate) fn heap_bytes(&self) -> usize {
+        size_of::<Rows>() + self.fine.heap_bytes() + self.coarse.heap_bytes()
+    }
+
+    /// All that a move changes, as numbers.
+    pub(crate) fn pack(&self, bytes: &mut Vec<u8>) {
+        let slip_from = self.slip_from.unwrap_or(-1.0);
+        let own = [self.time, slip_from, f64::from(u8::from(self.beyond)), self.steps as f64];
+        let errors = [self.work_error, self.path_error];
+        let numbers = own.iter().chain(&self.largest).chain(&self.errors).chain(&errors);
+        numbers.for_each(|number| number.pack(bytes));
+        self.fine.pack(bytes);
+        self.coarse.pack(bytes);
+    }
+
+    /// How many bytes that are.
+    pub(crate) fn packed_length(&self) -> usize {
+        10 * size_of::<f64>() + self.fine.packed_length() + self.coarse.packed_length()
+    }
+
+    pub(crate) fn unpack(reader: &mut Reader<'_>, law: &SpringLaw<'_>, count: usize) -> Option<Rows> {
+        let mut rows = Rows::new(law, count, [0.0; 2]);
+        let mut next = || f64::unpack(reader);
+        rows.time = next()?;
+        rows.slip_from = Some(next()?).filter(|from| *from >= 0.0);
+        rows.beyond = next()? > 0.0;
+        rows.steps = next()? as usize;
+        (rows.largest, rows.errors) = ([next()?, next()?], [next()?, next()?]);
+        (rows.work_error, rows.path_error) = (next()?, next()?);
+        rows.fine = Row::unpack(reader, law, count)?;
+        rows.coarse = Row::unpack(reader, law, count / 2)?;
+        reader.0.is_empty().then_some(rows)
+    }
+}
