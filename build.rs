@@ -1,5 +1,5 @@
-//! Passes the versions of the program and of the compiler to the program, and compresses the files of the page and those
-//! of Swagger UI.
+//! Passes the versions of the program and of the compiler to the program, and compresses the files of the page and of
+//! Swagger UI.
 
 #[path = "build/commit.rs"]
 mod commit;

@@ -38,7 +38,10 @@ const SYMBOLS = {
 /** The name of a parameter, or of a combination such as `g_star * (radius/e_star)^(1/3)`, as children. */
 function inWords(name) {
   if (name in PARAMETERS) return [PARAMETERS[name][0]];
-  const symbols = name.replace(/[a-z_]+/g, (part) => SYMBOLS[part] ?? part).replaceAll(" * ", " · ").replaceAll("^2", "²");
+  const symbols = name
+    .replace(/[a-z_]+/g, (part) => SYMBOLS[part] ?? part)
+    .replaceAll(" * ", " · ")
+    .replaceAll("^2", "²");
   const end = symbols.indexOf("^(");
   return end < 0 ? [symbols] : [symbols.slice(0, end), el("sup", {}, symbols.slice(end + 2, -1))];
 }

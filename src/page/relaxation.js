@@ -23,8 +23,8 @@ export function pronyFields(form, changed) {
   const rows = el("div", {});
   const terms = [];
   const note =
-    "Each term takes its ratio off the modulus, which is that of the instant, with its relaxation time. The bodies are " +
-    "alike, or one is rigid.";
+    "Each term takes its ratio off the modulus, which is that of the instant, with its relaxation time. The bodies " +
+    "are alike, or one is rigid.";
   const add = () => {
     const [ratio, time, unit] = EXAMPLES[terms.length] ?? ["0.1", "1", "s"];
     const at = `/prony/${terms.length}`;

@@ -48,8 +48,8 @@ async fn bodies_with_memory_are_made_moved_and_wait() {
     browser
         .until(&format!(
             "(() => {{ const way = {FORCE}; const top = way.findIndex(([, y]) => y === Math.min(...way.map((p) => \
-             p[1]))); const [from, to] = [way[top], way.at(-1)]; const middle = way.find(([x]) => x > (from[0] + to[0]) \
-             / 2); return way.length > 20 && to[1] > from[1] + 20 && middle?.[1] > (from[1] + to[1]) / 2; }})()"
+             p[1]))); const [from, to] = [way[top], way.at(-1)]; const middle = way.find(([x]) => x > (from[0] + \
+             to[0]) / 2); return way.length > 20 && to[1] > from[1] + 20 && middle?.[1] > (from[1] + to[1]) / 2; }})()"
         ))
         .await;
     browser.says(".side", "Work of the bodies").await;

@@ -1,5 +1,5 @@
-//! What the service stickslip keeps and whom it admits, without HTTP: `stickslip` puts HTTP and the command line on top,
-//! and what is computed is in `stickslip-compute`.
+//! What the service stickslip keeps and whom it admits, without HTTP: `stickslip` puts HTTP and the command line on
+//! top, and what is computed is in `stickslip-compute`.
 //!
 //! [`access`] is access control: keys, roles and tenants.
 //!

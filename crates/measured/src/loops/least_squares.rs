@@ -128,7 +128,7 @@ impl Data {
         self.layout.parameters[column].is_some_and(Parameter::positive)
     }
 
-    /// Whether a parameter may be zero, which its logarithm never reaches: friction where a shear strength carries shear.
+    /// Whether a parameter may be zero, which its logarithm never reaches: friction where a strength carries shear.
     pub(super) fn may_be_zero(&self, parameter: Parameter, values: &[f64]) -> bool {
         match parameter {
             Parameter::MachineCompliance => true,

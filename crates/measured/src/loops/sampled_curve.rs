@@ -6,7 +6,7 @@
 //! of a ball is a polynomial in it, and the panels of others need to be small only at the ends.
 //!
 //! With a shear strength, displacement and force are sums of two parts at the same stick radius c, one in proportion to
-//! mu and one to tau_0. For that the part of mu is sampled once more over the angle acos(c/a), in which both are smooth.
+//! mu and one to tau_0. For that the part of mu is sampled once more over the angle acos(c/a): both are smooth in it.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 

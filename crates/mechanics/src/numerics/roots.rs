@@ -36,8 +36,8 @@ pub(crate) fn within([mut low, mut high]: [f64; 2], start: f64, mut f: impl FnMu
 }
 
 /// The root of a function without a slope between two places where its signs differ, each given with its value. Ends
-/// where the bracket is no wider than `width` or the function is zero, with the end of the bracket at which the function
-/// is nearer to zero.
+/// where the bracket is no wider than `width` or the function is zero, with the end of the bracket at which the
+/// function is nearer to zero.
 pub(crate) fn between(ends: [(f64, f64); 2], width: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     let mut bracket = Bracket::new(ends, width);
     while let Some(x) = bracket.next() {

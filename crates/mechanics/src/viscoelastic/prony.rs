@@ -196,8 +196,8 @@ impl Prony {
         middle - kept
     }
 
-    /// Moves many springs by the same way, from deflections that are `first` and, times a sign, those of a list: the v_i
-    /// after that, term after term, and p.
+    /// Moves many springs by the same way, from deflections that are `first` and, times a sign, those of a list: the
+    /// v_i after that, term after term, and p.
     pub(crate) fn follow(
         &self,
         kernel: &Kernel,
@@ -257,8 +257,8 @@ impl Prony {
         }
     }
 
-    /// Lets springs slide that are at a bound of `factor` times the p of others: v less that of these relaxes freely. The
-    /// v_i after that of `range`, and the deflection that they keep, from the v_i of both before and those of the
+    /// Lets springs slide that are at a bound of `factor` times the p of others: v less that of these relaxes freely.
+    /// The v_i after that of `range`, and the deflection that they keep, from the v_i of both before and those of the
     /// others after it.
     pub(crate) fn slide(
         &self,

@@ -1,12 +1,12 @@
 //! A row of springs over the radius of a contact, each in the middle of its cell, and its steps: the one stepper of
 //! every limit law ([`SpringLaw`]), with a memory of its own where the bodies relax.
 //!
-//! In units of its stiffness a spring carries q = u - s within +-B, where s is the deflection that its memory keeps, and
-//! B its room times a scale. Of Coulomb's law the room is p = w - s_z, w = d - g(x). Outside the contact nothing is
+//! In units of its stiffness a spring carries q = u - s within +-B, where s is the deflection that its memory keeps,
+//! and B its room times a scale. Of Coulomb's law the room is p = w - s_z, w = d - g(x). Outside the contact nothing is
 //! carried, and both deflections relax freely; a spring touches where d - g exceeds the deflection that is left, and
-//! leaves where p would fall below zero. While it slips one way, u - s = +-m (w - s_z): so v_x -+ m v_z relaxes as if it
-//! were free, however w moves. A step that is straight in d and U is therefore exact for each spring, but for what it
-//! does more than once in the step: it touches or leaves once and begins to slip once. Without a memory s is zero.
+//! leaves where p would fall below zero. While it slips one way, u - s = +-m (w - s_z): so v_x -+ m v_z relaxes as if
+//! it were free, however w moves. A step that is straight in d and U is therefore exact for each spring, but for what
+//! it does more than once in the step: it touches or leaves once and begins to slip once. Without a memory s is zero.
 //!
 //! All springs are moved as if they touched and stuck throughout, one term after the other. Those that do not, are then
 //! moved one by one.

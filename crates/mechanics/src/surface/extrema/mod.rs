@@ -334,7 +334,7 @@ impl<'s, 'c, 'p> Search<'s, 'c, 'p> {
         None
     }
 
-    /// Leaves a change of sign between two samples to be found. At an end that is infinitely far the sign alone is known.
+    /// Leaves a change of sign between two samples to be found. At an end infinitely far away the sign alone is known.
     fn find_root(&mut self, interval: &StressInterval, from: Sample, to: Sample) {
         let end = |sample: Sample, other: Sample| {
             let size = if sample.place.is_finite() { sample.value.abs() } else { other.value.abs() };
