@@ -166,11 +166,10 @@ impl Contact {
     }
 
     /// The error that curved moves have left in the friction work, J: an estimate from above. What slips along a chord
-    /// in the place of the curve, and every move under a force that is off, adds to it. Of bodies with memory, that of
-    /// their springs on every path.
+    /// in the place of the curve, and every move under a force that is off, adds to it.
     #[must_use]
     pub fn work_error(&self) -> f64 {
-        self.viscoelastic.as_ref().map_or(self.work_error, |bodies| bodies.rows.work_error)
+        self.work_error
     }
 
     /// Contact radius a, m; half-width of a line contact; of a profile without a stress field as

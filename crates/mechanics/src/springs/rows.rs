@@ -21,9 +21,8 @@ pub(crate) struct Rows {
     pub(crate) steps: usize,
     /// The largest normal force, N, and the largest force, N, or torque, N m, of gross slip.
     pub(crate) largest: [f64; 2],
-    /// The largest errors of these, and of the friction work, J.
+    /// The largest errors of these.
     pub(super) errors: [f64; 2],
-    pub(crate) work_error: f64,
     /// The part of the error that comes from paths that are straight in a force or torque, over that of gross slip.
     pub(crate) path_error: f64,
 }
@@ -42,7 +41,6 @@ impl Rows {
             steps: 0,
             largest: numbers,
             errors: numbers,
-            work_error: 0.0,
             path_error: 0.0,
         }
     }
@@ -51,10 +49,9 @@ impl Rows {
     pub(crate) fn take_from(&mut self, other: &Rows) {
         self.fine.take_from(&other.fine);
         self.coarse.take_from(&other.coarse);
-        let Rows { fine: _, coarse: _, time, slip_from, beyond, steps, largest, errors, work_error, path_error } =
-            *other;
+        let Rows { fine: _, coarse: _, time, slip_from, beyond, steps, largest, errors, path_error } = *other;
         (self.time, self.slip_from, self.beyond, self.steps) = (time, slip_from, beyond, steps);
-        (self.largest, self.errors, self.work_error, self.path_error) = (largest, errors, work_error, path_error);
+        (self.largest, self.errors, self.path_error) = (largest, errors, path_error);
     }
 
     /// Steps of the finer row to the ends of equal parts of a time, s, and one of the other row to the last of them.
@@ -86,7 +83,6 @@ impl Rows {
             self.largest[side] = self.largest[side].max(limits[side]);
             self.errors[side] = self.errors[side].max(apart[side]);
         });
-        self.work_error = self.work_error.max((self.fine.works[0] - self.coarse.works[0]).abs());
     }
 
     /// The same, with what the number of springs must leave.
@@ -118,12 +114,9 @@ impl Rows {
         present.max(relative(self.errors[1], self.largest[1])) + self.path_error
     }
 
-    /// Takes a part of a path into the stated errors along which the force is off, over that of gross slip, by `error`
-    /// while the contact moves by a `way`, m or rad.
-    pub(crate) fn note_path(&mut self, error: f64, way: f64) {
-        let error = error.min(MOST_ERROR);
-        self.path_error = self.path_error.max(error);
-        self.work_error += error * self.largest[1] * way.abs();
+    /// Takes a part of a path into the stated errors along which the force is off by `error`, over that of gross slip.
+    pub(crate) fn note_path(&mut self, error: f64) {
+        self.path_error = self.path_error.max(error.min(MOST_ERROR));
     }
 
     /// Springs from the centre to the edge of the row.
@@ -139,8 +132,7 @@ impl Rows {
     pub(crate) fn pack(&self, bytes: &mut Vec<u8>) {
         let slip_from = self.slip_from.unwrap_or(-1.0);
         let own = [self.time, slip_from, f64::from(u8::from(self.beyond)), self.steps as f64];
-        let errors = [self.work_error, self.path_error];
-        let numbers = own.iter().chain(&self.largest).chain(&self.errors).chain(&errors);
+        let numbers = own.iter().chain(&self.largest).chain(&self.errors).chain([&self.path_error]);
         numbers.for_each(|number| number.pack(bytes));
         self.fine.pack(bytes);
         self.coarse.pack(bytes);
@@ -148,7 +140,7 @@ impl Rows {
 
     /// How many bytes that are.
     pub(crate) fn packed_length(&self) -> usize {
-        10 * size_of::<f64>() + self.fine.packed_length() + self.coarse.packed_length()
+        9 * size_of::<f64>() + self.fine.packed_length() + self.coarse.packed_length()
     }
 
     pub(crate) fn unpack(reader: &mut Reader<'_>, law: &SpringLaw<'_>, count: usize) -> Option<Rows> {
@@ -159,7 +151,7 @@ impl Rows {
         rows.beyond = next()? > 0.0;
         rows.steps = next()? as usize;
         (rows.largest, rows.errors) = ([next()?, next()?], [next()?, next()?]);
-        (rows.work_error, rows.path_error) = (next()?, next()?);
+        rows.path_error = next()?;
         rows.fine = Row::unpack(reader, law, count)?;
         rows.coarse = Row::unpack(reader, law, count / 2)?;
         reader.0.is_empty().then_some(rows)

@@ -178,7 +178,7 @@ impl Rows {
                 error = if limit > 0.0 { apart * law.stiffness(finer.fine.radius(&law))[1] / limit } else { 0.0 };
                 found = finer;
             }
-            found.note_path(error, found.fine.position - self.fine.position);
+            found.note_path(error);
         }
         *self = found;
         Ok(())

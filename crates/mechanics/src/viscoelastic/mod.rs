@@ -143,7 +143,6 @@ impl Rows {
                 let kept: &mut Rows = last.get_or_insert_with(|| self.clone());
                 kept.take_from(self);
             }
-            let position = self.fine.position;
             let (bend, exact) = self.step_along(law, leg, [part, end], &mut scratch)?;
             // Over what it may be; a path that is straight in d and U is exact.
             let excess = (bend / allowed).max(exact / BEND);
@@ -156,7 +155,7 @@ impl Rows {
             part = end;
             count += 1;
             if !straight {
-                self.note_path(bend, self.fine.position - position);
+                self.note_path(bend);
             }
             self.note_difference(&SpringLaw::Coulomb(*law));
         }

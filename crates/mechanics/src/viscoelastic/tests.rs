@@ -41,7 +41,7 @@ fn pressing_and_holding_a_ball_meet_lee_and_radok() {
 fn the_stated_error_is_never_below_a_third_of_the_true_one() {
     let indenter = ball();
     let mut random = fastrand::Rng::with_seed(73);
-    let (mut worst, mut worst_of_work) = (0.0_f64, 0.0_f64);
+    let mut worst = 0.0_f64;
     for case in 0..200 {
         let count = 1 + case % 3;
         let terms: Vec<(f64, f64)> = (0..count)
@@ -95,11 +95,7 @@ fn the_stated_error_is_never_below_a_third_of_the_true_one() {
                 worst = worst.max(error / stated);
                 assert!(error <= 3.0 * stated, "{case}: {index}: {error:e}, stated {stated:e}");
             }
-            let (error, stated) = ((rough.fine.works[0] - fine.fine.works[0]).abs(), rough.work_error);
-            worst_of_work = worst_of_work.max(error / stated);
-            assert!(error <= 3.0 * stated, "{case}: work {error:e}, stated {stated:e}");
         }
     }
-    assert!(worst_of_work > 0.1, "{worst_of_work}");
     assert!(worst > 0.1, "an estimate that is far too large tells nothing: {worst}");
 }
