@@ -14,8 +14,9 @@
 //! [`store`] stores what must survive: definitions, moves, snapshots, jobs, and replies for retries. It knows no
 //! physics.
 //!
-//! [`metrics`] are counters, gauges and histograms; [`otlp`] sends traces; a [`tenant`] is whom keys, quotas and what
-//! is stored belong to. Every module may use them, and TLS to servers that need not be verified, [`unverified_tls`].
+//! [`mod@metrics`] are counters, gauges and histograms; [`otlp`] sends traces; a [`tenant`] is whom keys, quotas and
+//! what is stored belong to. Every module may use them, and TLS to servers that need not be verified,
+//! [`unverified_tls`].
 //!
 //! A module imports only from those below it here; jobs and contacts know nothing of each other.
 
