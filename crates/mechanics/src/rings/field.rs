@@ -3,10 +3,11 @@
 //! What the rings have is taken at the middle of their area and drawn straight in r^2 from ring to ring; a traction as
 //! its share of mu p, so that it is mu p where the ring slips, whatever the pressure does within it.
 
+use super::discretisation::Discretisation;
 use super::follow::Scene;
-use super::level::Level;
-use super::mesh::Vector;
-use super::solution::{Solution, extrapolated, touching};
+use super::solution::{Solution, extrapolated};
+use super::step::Ring;
+use super::stiffness::Vector;
 use crate::contact::Contact;
 
 /// The stress error over the difference that twice as many rings make: beside the edge of the stick zone the stress
@@ -29,17 +30,17 @@ pub(super) struct Field {
 }
 
 impl Field {
-    pub(super) fn new(scene: &Scene<'_>, levels: &[Level; 4]) -> Field {
-        let [one, two, four, fine] = levels;
-        let (count, coarse) = (fine.mesh.count, one.mesh.count);
+    pub(super) fn new(scene: &Scene<'_>, runs: &[Discretisation; 4]) -> Field {
+        let [one, two, four, fine] = runs;
+        let (count, coarse) = (fine.matrix.count, one.matrix.count);
         // What more steps change on the few rings.
-        let refined = |of: &dyn Fn(&Level, usize) -> Vector| -> Vec<Vector> {
+        let refined = |of: &dyn Fn(&Discretisation, usize) -> Vector| -> Vec<Vector> {
             let refined = |ring: usize, axis: usize| {
-                extrapolated([one, two, four].map(|level| of(level, ring)[axis])) - of(one, ring)[axis]
+                extrapolated([one, two, four].map(|run| of(run, ring)[axis])) - of(one, ring)[axis]
             };
             (0..coarse).map(|ring| [0, 1].map(|axis| refined(ring, axis))).collect()
         };
-        let blended = |of: &dyn Fn(&Level, usize) -> Vector| -> Vec<Vector> {
+        let blended = |of: &dyn Fn(&Discretisation, usize) -> Vector| -> Vec<Vector> {
             let change = refined(of);
             let at = |ring: usize| {
                 let (own, change) = (of(fine, ring), between(&change, middle(ring, count)));
@@ -47,33 +48,32 @@ impl Field {
             };
             (0..count).map(at).collect()
         };
-        let ratio_of = |level: &Level, ring: usize| {
-            let bound = level.bounds[ring];
-            level.traction[ring].map(|component| if bound > 0.0 { component / bound } else { 0.0 })
+        let ratio_of = |run: &Discretisation, ring: usize| {
+            let Ring { bound, traction, .. } = run.rings[ring];
+            traction.map(|component| if bound > 0.0 { component / bound } else { 0.0 })
         };
         let mut ratio = blended(&ratio_of);
         for ratio in &mut ratio {
             let size = ratio[0].hypot(ratio[1]).max(1.0);
             *ratio = ratio.map(|component| component / size);
         }
-        // Friction times the largest pressure on a ring, as a force in the units of the levels.
+        // Friction times the largest pressure on a ring, as a force.
         let area = std::f64::consts::PI * scene.reach * scene.reach / count as f64;
-        let largest = scene.contact.friction() * scene.pressed.summary().unit_pressure() * area / scene.unit_force;
+        let largest = scene.contact.friction() * scene.pressed.summary().unit_pressure() * area;
         let of_few: Vec<Vector> = (0..coarse).map(|ring| ratio_of(one, ring)).collect();
         let change = refined(&ratio_of);
         let error = |ring: usize| {
             let (own, few) = (ratio_of(fine, ring), between(&of_few, middle(ring, count)));
             let [x, y] = between(&change, middle(ring, count));
             let error = BESIDE_STICK * (own[0] - few[0]).hypot(own[1] - few[1]) + 0.5 * x.hypot(y);
-            if largest.is_finite() && largest > 0.0 { error * (fine.bounds[ring] / largest).min(1.0) } else { 0.0 }
+            if largest.is_finite() && largest > 0.0 { error * (fine.rings[ring].bound / largest).min(1.0) } else { 0.0 }
         };
         let stress_error = (0..count).map(error).fold(0.0, f64::max);
-        ratio.truncate(touching(fine));
-        let energy = scene.unit_force * scene.unit_displacement / area;
-        let of_slip = |level: &Level, ring: usize| level.memory[ring].map(|own| -own * scene.unit_displacement);
-        let of_work = |level: &Level, ring: usize| {
-            let rings = level.mesh.count as f64 / count as f64;
-            [level.dissipated[ring] * energy * rings, 0.0]
+        ratio.truncate(fine.touching());
+        let of_slip = |run: &Discretisation, ring: usize| run.slipped[ring];
+        let of_work = |run: &Discretisation, ring: usize| {
+            let rings = run.matrix.count as f64 / count as f64;
+            [run.dissipated[ring] / area * rings, 0.0]
         };
         let (slip, work) = (blended(&of_slip), blended(&of_work));
         Field { reach: scene.reach, ratio, slip, work, stress_error, pressed: scene.pressed.clone(), line: None }

@@ -2,15 +2,15 @@
 
 use std::sync::Arc as Shared;
 
-use super::level::{Level, Target};
-use super::load::beyond;
-use super::mesh::{Mesh, Vector};
+use super::discretisation::{Discretisation, Target};
 use super::solution::{Blend, Solution};
+use super::step::{PlanarBuffers, Units};
+use super::stiffness::{RingStiffness, Vector};
+use super::straight::straight_moves;
 use super::{PlanarMove, PlanarTarget, TURNED};
 use crate::contact::Contact;
-use crate::contact::state::{Move, Normal, Setup, State, Tangential};
+use crate::contact::state::{Move, Normal, Setup};
 use crate::numerics::double_double::DoubleDouble;
-use crate::path::curved_move::DEFAULT_TOLERANCE;
 use crate::profile::Profile;
 use crate::range;
 use crate::range::error::Error;
@@ -30,8 +30,6 @@ const SHORTEST_STEP: f64 = 1e-3;
 const MOST_STEPS: usize = 10_000;
 /// How often rings or steps are refined.
 const REFINEMENTS: usize = 6;
-/// The sine of an angle up to which two directions are one, but for rounding.
-const ONE_LINE: f64 = 8.0 * f64::EPSILON;
 
 /// How a path is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,66 +70,23 @@ pub(super) struct Load {
     by_force: bool,
 }
 
-/// What a path is made of, and the units of its discretisations.
+/// What a path is made of.
 pub(super) struct Scene<'a> {
     /// At its preload.
     pub(super) contact: Contact,
     /// Under the load at the end.
     pub(super) pressed: Contact,
-    moves: &'a [PlanarMove],
+    pub(super) moves: &'a [PlanarMove],
     /// The normal load before the first move and after each.
     pub(super) loads: Vec<Load>,
     pub(super) constant_load: bool,
     /// The largest normal force, N, and the largest indentation, m.
     pub(super) largest_load: f64,
     depth: f64,
-    kinks: Vec<f64>,
     /// The largest contact radius, m.
     pub(super) reach: f64,
-    /// E* times the reach and the largest indentation, N.
-    unit_load: f64,
-    /// The displacement of gross slip at the largest indentation, m.
-    pub(super) unit_displacement: f64,
-    /// The tangential force of the reach and that displacement, N.
-    pub(super) unit_force: f64,
-}
-
-/// How many of the moves lead along one line from the start, and its direction, the unit vector of the first of them
-/// that leads anywhere.
-///
-/// ```
-/// use stickslip_mechanics::rings::{PlanarMove, PlanarTarget, straight_moves};
-///
-/// let to = |x, y| PlanarMove { tangential: Some(PlanarTarget::Displacement([x, y])), ..PlanarMove::default() };
-/// assert_eq!(straight_moves(&[to(3.0, 4.0), to(-6.0, -8.0), to(1.0, 0.0)]), (2, [0.6, 0.8]));
-/// ```
-#[must_use]
-pub fn straight_moves(moves: &[PlanarMove]) -> (usize, [f64; 2]) {
-    let mut direction: Option<Vector> = None;
-    let mut on_line = |step: &PlanarMove| match step.tangential {
-        None => true,
-        Some(PlanarTarget::Arc(_)) => false,
-        Some(PlanarTarget::Displacement([x, y]) | PlanarTarget::Force([x, y])) => {
-            let size = x.hypot(y);
-            if size <= 0.0 {
-                return true;
-            }
-            let [along, across] = *direction.get_or_insert([x / size, y / size]);
-            (x / size * across - y / size * along).abs() <= ONE_LINE
-        }
-    };
-    let count = moves.iter().take_while(|step| on_line(step)).count();
-    (count, direction.unwrap_or([1.0, 0.0]))
-}
-
-/// A move on the line of this direction as a move along it.
-fn along(step: &PlanarMove, [x, y]: Vector) -> Move {
-    let tangential = step.tangential.map(|target| match target {
-        PlanarTarget::Displacement(to) => Tangential::Displacement(to[0] * x + to[1] * y),
-        PlanarTarget::Force(to) => Tangential::Force(to[0] * x + to[1] * y),
-        PlanarTarget::Arc(arc) => Tangential::Displacement(arc.at(1.0)[0] * x + arc.at(1.0)[1] * y),
-    });
-    Move { tangential, normal: step.normal, relative: step.relative, duration: 0.0 }
+    /// Of the largest contact radius and indentation.
+    pub(super) units: Units,
 }
 
 /// Follows a path from the virgin contact, while `keep_going` returns true, which is asked at every step.
@@ -233,15 +188,11 @@ impl<'a> Scene<'a> {
         let largest = |of: fn(&Load) -> f64| positive(loads.iter().map(of).fold(0.0, f64::max));
         let (reach, depth) = (largest(|load| load.radius), largest(|load| load.indentation));
         let (e_star, g_star) = (contact.elasticity().e_star(), contact.elasticity().g_star());
-        let unit_displacement = positive(contact.friction()) * e_star / g_star * depth;
         Ok(Scene {
-            kinks: contact.indenter.knots_below(reach),
+            units: Units { stiffness: g_star * reach, full: positive(contact.friction()) * e_star / g_star * depth },
             constant_load: loads.iter().all(|load| load.indentation.to_bits() == loads[0].indentation.to_bits()),
             largest_load: loads.iter().map(|load| load.normal_force).fold(0.0, f64::max),
             depth,
-            unit_load: e_star * reach * depth,
-            unit_force: g_star * reach * unit_displacement,
-            unit_displacement,
             reach,
             loads,
             moves,
@@ -250,62 +201,58 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// Friction times the load of each ring.
-    fn bounds(&self, mesh: &Mesh, indentation: f64, normal_force: f64) -> Vec<f64> {
+    /// Prepares a step to a load of an indentation, m, and a normal force, N.
+    fn press(&self, buffers: &mut PlanarBuffers, matrix: &RingStiffness, [indentation, normal_force]: [f64; 2]) {
         let edge = if indentation > 0.0 { self.contact.indenter.radius(indentation) } else { 0.0 };
-        let at = |index: usize| {
-            let radius = self.reach * mesh.radius(index);
-            if index == mesh.count {
-                0.0
-            } else {
-                beyond(self.contact.indenter(), &self.kinks, indentation, edge, radius)
-            }
-        };
-        let outside: Vec<f64> = (0..=mesh.count).map(at).collect();
-        let frictional = if self.contact.friction() > 0.0 { 1.0 } else { 0.0 };
-        let unit = if outside[0] > 0.0 { frictional * normal_force / self.unit_load / outside[0] } else { 0.0 };
-        outside.windows(2).map(|ends| unit * (ends[0] - ends[1]).max(0.0)).collect()
+        let radii = (0..matrix.count).map(|index| self.reach * matrix.radius(index));
+        let limit = self.contact.friction() * normal_force;
+        buffers.press(self.contact.indenter(), [indentation, edge], limit, radii);
     }
 
     /// Follows the path by [`STEPS`] at once; returns the solution and the length of the longest step of the coarsest.
     fn pass(&self, count: usize, length: f64, keep_going: &dyn Fn() -> bool) -> Result<(Solution, f64), Refusal> {
-        let [fine, coarse] = [count, count / 2].map(|count| Shared::new(Mesh::new(count)));
-        let start = self.loads[0];
-        let level = |mesh: &Shared<Mesh>| {
-            Level::new(Shared::clone(mesh), self.bounds(mesh, start.indentation, start.normal_force))
+        let at_rest = |count: usize| {
+            let (matrix, mut buffers) = (Shared::new(RingStiffness::new(count)), PlanarBuffers::default());
+            self.press(&mut buffers, &matrix, [self.loads[0].indentation, self.loads[0].normal_force]);
+            Discretisation::new(matrix, self.units, buffers)
         };
-        let mut levels = [level(&coarse), level(&coarse), level(&coarse), level(&fine)];
+        let coarse = at_rest(count / 2);
+        let mut runs = [coarse.clone(), coarse.clone(), coarse, at_rest(count)];
         let mut blend = Blend::new(self);
         let mut longest: f64 = 0.0;
         for index in 0..self.moves.len() {
-            let sections = self.sections(&levels[0], index, length);
-            for (level, multiple) in levels.iter_mut().zip(STEPS) {
-                level.slipped.fill(false);
-                self.run(level, index, &sections, multiple, keep_going)
+            let sections = self.sections(&runs[0], index, length);
+            for (run, multiple) in runs.iter_mut().zip(STEPS) {
+                run.first_slip = run.matrix.count;
+                self.run(run, index, &sections, multiple, keep_going)
                     .map_err(|error| Refusal { index: Some(index), error })?;
             }
             for section in &sections {
                 longest = longest.max(section.length / section.steps as f64);
                 blend.steps += section.steps * STEPS[2];
             }
-            blend.add(self, &levels, index);
+            blend.add(self, &runs, index);
         }
-        Ok((blend.solution(self, &levels), longest))
+        Ok((blend.solution(self, &runs), longest))
     }
 
     /// The sections of a move: what turns the slip, in steps of at most `length`, and the rest, which is straight.
-    fn sections(&self, level: &Level, index: usize, length: f64) -> Vec<Section> {
+    fn sections(&self, run: &Discretisation, index: usize, length: f64) -> Vec<Section> {
         let (step, from, to) = (&self.moves[index], &self.loads[index], &self.loads[index + 1]);
         let pressed = (to.indentation - from.indentation).abs() / self.depth;
         let moved = match step.tangential {
             None => 0.0,
-            Some(PlanarTarget::Displacement(_)) => distance(level.displacement, self.target(level, step).0),
-            Some(PlanarTarget::Force(_)) => distance(level.force, self.target(level, step).0),
+            Some(PlanarTarget::Displacement(_)) => {
+                distance(run.displacement, self.target(run, step).0) / self.units.full
+            }
+            Some(PlanarTarget::Force(_)) => {
+                distance(run.force, self.target(run, step).0) / (self.units.stiffness * self.units.full)
+            }
             Some(PlanarTarget::Arc(arc)) => {
                 let [begin, end] = arc.turns;
                 std::f64::consts::TAU
                     * (end - begin).abs()
-                    * (arc.radii[0].hypot(arc.radii[1]) / self.unit_displacement).min(TURNED)
+                    * (arc.radii[0].hypot(arc.radii[1]) / self.units.full).min(TURNED)
             }
         };
         let whole = moved + pressed;
@@ -319,31 +266,30 @@ impl<'a> Scene<'a> {
         vec![Section { ends: [0.0, 1.0], length: whole, steps: steps(whole) }]
     }
 
-    /// The end of a move for this discretisation, in its units, and whether it is a force.
-    fn target(&self, level: &Level, step: &PlanarMove) -> (Vector, bool) {
-        let from = |begin: Vector, by: Vector, unit: f64| {
-            let by = by.map(|component| component / unit);
+    /// The end of a move for this discretisation, and whether it is a force.
+    fn target(&self, run: &Discretisation, step: &PlanarMove) -> (Vector, bool) {
+        let from = |begin: Vector, by: Vector| {
             if step.relative { [begin[0] + by[0], begin[1] + by[1]] } else { by }
         };
         match step.tangential {
-            None => (level.displacement, false),
-            Some(PlanarTarget::Displacement(to)) => (from(level.displacement, to, self.unit_displacement), false),
-            Some(PlanarTarget::Force(to)) => (from(level.force, to, self.unit_force), true),
-            Some(PlanarTarget::Arc(arc)) => (arc.at(1.0).map(|component| component / self.unit_displacement), false),
+            None => (run.displacement, false),
+            Some(PlanarTarget::Displacement(to)) => (from(run.displacement, to), false),
+            Some(PlanarTarget::Force(to)) => (from(run.force, to), true),
+            Some(PlanarTarget::Arc(arc)) => (arc.at(1.0), false),
         }
     }
 
     fn run(
         &self,
-        level: &mut Level,
+        run: &mut Discretisation,
         index: usize,
         sections: &[Section],
         multiple: usize,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
         let (step, from, to) = (&self.moves[index], self.loads[index], self.loads[index + 1]);
-        let (target, is_force) = self.target(level, step);
-        let begin = if is_force { level.force } else { level.displacement };
+        let (target, is_force) = self.target(run, step);
+        let begin = if is_force { run.force } else { run.displacement };
         let straight = |part: f64| [0, 1].map(|axis| begin[axis] + part * (target[axis] - begin[axis]));
         for section in sections {
             let count = section.steps * multiple;
@@ -354,69 +300,43 @@ impl<'a> Scene<'a> {
                 let [first, last] = section.ends;
                 let part = if number == count { last } else { first + (last - first) * number as f64 / count as f64 };
                 if from.indentation.to_bits() != to.indentation.to_bits() {
-                    let (indentation, normal_force) = self.load_at(from, to, part);
-                    level.bounds = self.bounds(&level.mesh, indentation, normal_force);
+                    self.press(&mut run.buffers, &run.matrix, self.load_at(from, to, part));
                 }
                 let here = match step.tangential {
-                    Some(PlanarTarget::Arc(arc)) => arc.at(part).map(|component| component / self.unit_displacement),
+                    Some(PlanarTarget::Arc(arc)) => arc.at(part),
                     _ if part >= 1.0 => target,
                     _ => straight(part),
                 };
                 if !is_force {
-                    level.step(Target::Displacement(here));
+                    run.step(Target::Displacement(here));
                     continue;
                 }
-                let (limit, wanted) = (level.bounds.iter().sum::<f64>(), here[0].hypot(here[1]));
+                let (limit, wanted) = (run.limit(), here[0].hypot(here[1]));
                 if limit <= 0.0 && wanted <= 0.0 {
                     // Every displacement has the force zero.
-                    level.step(Target::Displacement(level.displacement));
+                    run.step(Target::Displacement(run.displacement));
                     continue;
                 }
                 if wanted >= limit {
-                    let size = target[0].hypot(target[1]) * self.unit_force;
-                    return Err(Error::ForceExceedsFriction { target: size, limit: limit * self.unit_force, part });
+                    return Err(Error::ForceExceedsFriction { target: target[0].hypot(target[1]), limit, part });
                 }
-                level.step(Target::Force(here));
+                run.step(Target::Force(here));
             }
         }
         Ok(())
     }
 
     /// Indentation, m, and normal force, N, at a part of a move.
-    fn load_at(&self, from: Load, to: Load, part: f64) -> (f64, f64) {
+    fn load_at(&self, from: Load, to: Load, part: f64) -> [f64; 2] {
         if part >= 1.0 {
-            return (to.indentation, to.normal_force);
+            return [to.indentation, to.normal_force];
         }
         if to.by_force {
             let force = from.normal_force + part * (to.normal_force - from.normal_force);
-            return (self.contact.indentation_for(force).value(), force);
+            return [self.contact.indentation_for(force).value(), force];
         }
         let indentation = from.indentation + part * (to.indentation - from.indentation);
-        (indentation, self.contact.normal_force_at(DoubleDouble::from(indentation)))
-    }
-
-    /// The solution with the exact states of the first moves, as far as they lead along one line.
-    fn with_exact(&self, mut solution: Solution, keep_going: &dyn Fn() -> bool) -> Result<Solution, Refusal> {
-        let (_, direction, states) = self.exact(keep_going)?;
-        solution.replace(&states, direction);
-        Ok(solution)
-    }
-
-    /// The exact contact after the first moves, as far as they lead along one line, that line's direction, and the
-    /// states after each of them.
-    fn exact(&self, keep_going: &dyn Fn() -> bool) -> Result<(Contact, Vector, Vec<State>), Refusal> {
-        let (count, direction) = straight_moves(self.moves);
-        let mut exact = self.contact.clone();
-        let states = self.moves.iter().take(count).enumerate().map(|(index, step)| {
-            let refused = |error| Refusal { index: Some(index), error };
-            if !keep_going() {
-                return Err(refused(Error::Interrupted));
-            }
-            exact.apply_while(&along(step, direction), DEFAULT_TOLERANCE, keep_going).map_err(refused)?;
-            Ok(exact.state())
-        });
-        let states: Vec<_> = states.collect::<Result<_, _>>()?;
-        Ok((exact, direction, states))
+        [indentation, self.contact.normal_force_at(DoubleDouble::from(indentation))]
     }
 }
 

@@ -2,19 +2,21 @@
 //!
 //! A contact keeps its rings from step to step. They have equal areas, which are doubled where the contact outgrows its
 //! rings, and halved where few of them are left. A step is made by the rings that touch before or after it: m rings of
-//! equal area have the matrix of [`Mesh`] for m, whatever the contact was divided into. The state is the force on each
+//! equal area have the matrix of [`RingStiffness`] for m, whatever the contact was divided into. The state is the force on each
 //! ring, which would be tau + K dU if all rings stuck, and so includes the slip of all steps before.
 
+mod contact;
 mod packed;
+
+pub use contact::PlanarContact;
 
 use std::sync::{Arc, OnceLock};
 
-use super::load::beyond;
-use super::mesh::{Mesh, Vector};
-use super::slip::{Workspace, solve};
-use super::{NO_SLIP, PlanarState, TURNED};
+use super::step::{Increment, PlanarBuffers, Ring, Units, dot};
+use super::stiffness::{RingStiffness, Vector};
+use super::{PlanarState, TURNED};
 use crate::contact::Contact;
-use crate::contact::state::{Normal, Regime, Setup};
+use crate::contact::state::{Normal, Setup};
 use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Profile;
 use crate::range;
@@ -22,8 +24,6 @@ use crate::range::error::Error;
 
 /// The part of the indentation to which a contact is unloaded at once.
 const UNLOADED: f64 = 0.5;
-/// The part of its area by which a contact may exceed its rings: rounding.
-const SAME_AREA: f64 = 1e-12;
 /// The part of all rings from which on their areas are halved is one over this.
 const FEWEST: usize = 4;
 
@@ -45,151 +45,8 @@ const FEWEST: usize = 4;
 pub struct PlanarLaw {
     /// At its preload.
     contact: Contact,
-    /// Those of 1, 2, ... rings.
-    meshes: Box<[OnceLock<Mesh>]>,
-}
-
-/// One contact with the history of its rings.
-#[derive(Clone, Debug)]
-pub struct PlanarContact {
-    indentation: f64,
-    normal_force: f64,
-    radius: f64,
-    displacement: Vector,
-    force: Vector,
-    stick_radius: f64,
-    dissipated: f64,
-    elastic: f64,
-    unsettled: f64,
-    /// The area of a ring over pi, m^2; zero without a contact.
-    area: f64,
-    /// Those that touch, from the centre outwards.
-    rings: Vec<Ring>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Ring {
-    /// Friction times the normal force on it, N.
-    bound: f64,
-    /// The tangential force on it, N.
-    traction: Vector,
-    /// Its slip in the last step, m, with which the next one begins its search.
-    slip: Vector,
-}
-
-/// What a step needs besides its contact: one for each thread.
-#[derive(Clone, Debug, Default)]
-pub struct PlanarBuffers {
-    /// Friction times the load of each ring at the end of the step, N, and that beyond its inner edge.
-    limits: Vec<f64>,
-    outside: Vec<f64>,
-    bounds: Vec<f64>,
-    forces: Vec<Vector>,
-    traction: Vec<Vector>,
-    slip: Vec<Vector>,
-    workspace: Workspace,
-}
-
-impl PlanarContact {
-    /// Normal force F_N, N.
-    #[must_use]
-    pub fn normal_force(&self) -> f64 {
-        self.normal_force
-    }
-
-    /// Tangential force, N.
-    #[must_use]
-    pub fn force(&self) -> [f64; 2] {
-        self.force
-    }
-
-    /// The largest force of a ring that the search for its slip has left in the last step, N: rounding, unless the
-    /// search did not end.
-    #[must_use]
-    pub fn unsettled_force(&self) -> f64 {
-        self.unsettled
-    }
-
-    /// The state after the last step.
-    #[must_use]
-    pub fn state(&self) -> PlanarState {
-        PlanarState {
-            displacement: self.displacement,
-            force: self.force,
-            indentation: self.indentation,
-            normal_force: self.normal_force,
-            contact_radius: self.radius,
-            stick_radius: self.stick_radius,
-            regime: match self.stick_radius {
-                _ if self.indentation < 0.0 => Regime::Separated,
-                radius if radius <= 0.0 && !self.rings.is_empty() => Regime::GrossSlip,
-                radius if radius < self.radius => Regime::PartialSlip,
-                _ => Regime::Stick,
-            },
-            dissipated_energy: self.dissipated,
-            elastic_energy: self.elastic,
-            work: self.dissipated + self.elastic,
-        }
-    }
-
-    /// Bytes of RAM that it takes.
-    #[must_use]
-    pub fn memory_bytes(&self) -> usize {
-        size_of::<PlanarContact>() + self.rings.capacity() * size_of::<Ring>()
-    }
-
-    /// Whether this load, of an indentation, m, and a normal force, N, is not the present one.
-    fn carries_another(&self, [indentation, normal_force]: [f64; 2]) -> bool {
-        indentation.to_bits() != self.indentation.to_bits() || normal_force.to_bits() != self.normal_force.to_bits()
-    }
-
-    /// Twice what two half steps have led to less what the `whole` step has, within the friction of each ring;
-    /// `dissipated` is the friction work before, J.
-    fn extrapolate(&mut self, whole: &PlanarContact, dissipated: f64) {
-        self.stick_radius = whole.stick_radius;
-        if self.area.to_bits() != whole.area.to_bits() || self.rings.len() != whole.rings.len() {
-            return;
-        }
-        self.force = [0.0; 2];
-        for (ring, whole) in self.rings.iter_mut().zip(&whole.rings) {
-            let [x, y] = [0, 1].map(|axis| 2.0 * ring.traction[axis] - whole.traction[axis]);
-            let share = (ring.bound / x.hypot(y)).min(1.0);
-            ring.traction = if share < 1.0 { [x * share, y * share] } else { [x, y] };
-            self.force = [0, 1].map(|axis| self.force[axis] + ring.traction[axis]);
-        }
-        self.dissipated = (2.0 * self.dissipated - whole.dissipated).max(dissipated);
-        self.elastic = (2.0 * self.elastic - whole.elastic).max(0.0);
-    }
-
-    /// How many rings the contact takes.
-    fn touching(&self) -> f64 {
-        (self.radius * self.radius * (1.0 - SAME_AREA) / self.area).ceil().max(1.0)
-    }
-
-    /// Makes one ring of two: the force on both stays.
-    fn merge(&mut self) {
-        self.area *= 2.0;
-        let merged = |pair: &[Ring]| Ring {
-            bound: pair.iter().map(|ring| ring.bound).sum(),
-            traction: [0, 1].map(|axis| pair.iter().map(|ring| ring.traction[axis]).sum()),
-            slip: [0.0; 2],
-        };
-        self.rings = self.rings.chunks(2).map(merged).collect();
-    }
-
-    /// Makes two rings of one: the force on it is shared as the bounds are.
-    fn split(&mut self, bounds: &[f64]) {
-        let halves = self.rings.iter().zip(bounds.chunks(2));
-        let of_ring = |(ring, pair): (&Ring, &[f64])| {
-            let (traction, whole) = (ring.traction, pair.iter().sum::<f64>());
-            let half = move |bound: &f64| {
-                let share = if whole > 0.0 { bound / whole } else { 0.0 };
-                Ring { bound: *bound, traction: traction.map(|component| component * share), slip: [0.0; 2] }
-            };
-            pair.iter().map(half).collect::<Vec<_>>()
-        };
-        self.rings = halves.flat_map(of_ring).collect();
-    }
+    /// The matrices of 1, 2, ... rings.
+    matrices: Box<[OnceLock<RingStiffness>]>,
 }
 
 impl PlanarLaw {
@@ -204,7 +61,7 @@ impl PlanarLaw {
         let setup = setup.shared();
         setup.profile.check_round("motion in the plane")?;
         setup.profile.check_stress_field()?;
-        Ok(PlanarLaw { contact: Contact::new(setup)?, meshes: (0..rings).map(|_| OnceLock::new()).collect() })
+        Ok(PlanarLaw { contact: Contact::new(setup)?, matrices: (0..rings).map(|_| OnceLock::new()).collect() })
     }
 
     /// The contact of the definition at its preload, which moves along a line.
@@ -363,7 +220,7 @@ impl PlanarLaw {
             contact.stick_radius = contact.radius;
         } else {
             self.slip(contact, by, full, buffers);
-            while FEWEST * contact.rings.len() <= self.meshes.len() {
+            while FEWEST * contact.rings.len() <= self.matrices.len() {
                 contact.area *= 0.5;
                 self.limits(contact, buffers);
                 contact.split(&buffers.limits);
@@ -379,7 +236,7 @@ impl PlanarLaw {
         if contact.normal_force <= 0.0 || contact.radius <= 0.0 {
             return;
         }
-        let most = self.meshes.len() as f64;
+        let most = self.matrices.len() as f64;
         if contact.area <= 0.0 {
             contact.area = contact.radius * contact.radius / most;
         }
@@ -392,72 +249,32 @@ impl PlanarLaw {
 
     /// Friction times the load of each ring, N.
     fn limits(&self, contact: &PlanarContact, buffers: &mut PlanarBuffers) {
-        let PlanarBuffers { limits, outside, .. } = buffers;
-        let (profile, count) = (self.contact.indenter(), contact.touching() as usize);
-        let kinks = profile.knots_below(contact.radius);
-        let from = |index: usize| {
-            let radius = (index as f64 * contact.area).sqrt();
-            beyond(profile, &kinks, contact.indentation, contact.radius, radius)
-        };
-        outside.clear();
-        outside.extend((0..count).map(from));
-        outside.push(0.0);
         let limit = self.contact.friction() * contact.normal_force;
-        let unit = if outside[0] > 0.0 { limit / outside[0] } else { 0.0 };
-        limits.clear();
-        limits.extend(outside.windows(2).map(|ends| unit * (ends[0] - ends[1]).max(0.0)));
+        let radii = (0..contact.touching() as usize).map(|index| (index as f64 * contact.area).sqrt());
+        buffers.press(self.contact.indenter(), [contact.indentation, contact.radius], limit, radii);
     }
 
     /// Moves the indenter by a vector, m, and asks Coulomb's law of each ring; `full` is the displacement of gross
     /// slip, m.
     fn slip(&self, contact: &mut PlanarContact, by: Vector, full: f64, buffers: &mut PlanarBuffers) {
-        let count = contact.rings.len();
-        let mesh = self.meshes[count - 1].get_or_init(|| Mesh::new(count));
-        let PlanarBuffers { limits, bounds, forces, traction, slip, workspace, .. } = buffers;
-        let touching = limits.len();
-        limits.resize(count, 0.0);
-        // In displacements: over G* times the outermost radius.
-        let unit = self.contact.elasticity().g_star() * (count as f64 * contact.area).sqrt();
-        bounds.clear();
-        bounds.extend(limits.iter().map(|limit| limit / unit));
-        let held = contact.rings.iter().zip(mesh.together());
-        forces.clear();
-        forces.extend(held.map(|(ring, share)| [0, 1].map(|axis| ring.traction[axis] / unit + share * by[axis])));
-        slip.clear();
-        // A long step slips by its own length, nearly.
-        let long = by[0].hypot(by[1]) > full;
-        slip.extend(contact.rings.iter().map(|ring| if long { by } else { ring.slip }));
-        traction.clear();
-        traction.resize(count, [0.0; 2]);
-        if self.contact.friction() > 0.0 {
-            contact.unsettled = solve(mesh.stiffness(false), bounds, forces, traction, slip, workspace) * unit;
-        }
-        contact.force = [0.0; 2];
-        // The innermost ring that slips.
-        let mut first = None;
-        for (index, ring) in contact.rings.iter_mut().enumerate() {
-            let (limit, slip) = (limits[index], slip[index]);
-            let before = ring.traction;
-            let after = traction[index].map(|component| component * unit);
-            let size = slip[0].hypot(slip[1]);
+        let (count, touching) = (contact.rings.len(), buffers.limits.len());
+        buffers.limits.resize(count, 0.0);
+        let matrix = self.matrices[count - 1].get_or_init(|| RingStiffness::new(count));
+        let stiffness = self.contact.elasticity().g_star() * (count as f64 * contact.area).sqrt();
+        let dissipated = &mut contact.dissipated;
+        let visit = &mut |_: usize, before: &Ring, ring: &Ring| {
             // It slips at the end of the step, from the force on that it had reached until then.
-            let end = limit * size;
-            let begin = if limit < ring.bound { dot(before, slip).max(end) } else { ring.bound * size };
-            contact.dissipated += 0.5 * (begin + end);
-            let moved = [by[0] - slip[0], by[1] - slip[1]];
-            contact.elastic += 0.5 * (dot(before, moved) + dot(after, moved));
-            contact.force = [contact.force[0] + after[0], contact.force[1] + after[1]];
-            if size > NO_SLIP * full && index < touching {
-                first.get_or_insert(index);
-            }
-            *ring = Ring { bound: limit, traction: after, slip };
-        }
-        contact.elastic = contact.elastic.max(0.0);
-        contact.stick_radius = first.map_or(contact.radius, |first| (first as f64 * contact.area).sqrt());
+            let size = ring.slip[0].hypot(ring.slip[1]);
+            let end = ring.bound * size;
+            let begin =
+                if ring.bound < before.bound { dot(before.traction, ring.slip).max(end) } else { before.bound * size };
+            *dissipated += 0.5 * (begin + end);
+        };
+        let (units, increment) = (Units { stiffness, full }, Increment::Displacement(by));
+        let done = buffers.step(&mut contact.rings, matrix, units, increment, visit);
+        (contact.force, contact.unsettled) = (done.force, done.unsettled);
+        contact.elastic = (contact.elastic + done.elastic).max(0.0);
+        contact.stick_radius = done.first_slip.map_or(contact.radius, |first| (first as f64 * contact.area).sqrt());
         contact.rings.truncate(touching);
     }
-}
-
-fn dot(one: Vector, other: Vector) -> f64 {
-    one[0] * other[0] + one[1] * other[1]
 }

@@ -6,18 +6,22 @@
 //! as along a line, is one traction vector for each ring, and Coulomb's law is asked of each ring. Rings of equal area
 //! and the steps of a move are halved to extrapolate the result and to state its error.
 
+mod discretisation;
 mod field;
 mod follow;
 mod law;
-mod level;
 mod load;
-mod mesh;
 mod slip;
 mod solution;
+mod step;
+mod stiffness;
+mod straight;
 
-pub use follow::{Options, Refusal, first_choice, follow, straight_moves};
-pub use law::{PlanarBuffers, PlanarContact, PlanarLaw};
+pub use follow::{Options, Refusal, first_choice, follow};
+pub use law::{PlanarContact, PlanarLaw};
 pub use solution::{PlanarState, Solution};
+pub use step::PlanarBuffers;
+pub use straight::straight_moves;
 
 use std::f64::consts::TAU;
 

@@ -5,7 +5,7 @@
 //! sum_j b_j |s_j| + s K s/2 - q s. One ring at a time it has the minimum s_j = (1 - b_j/|w|)_+ w/K_jj, w = t_j + K_jj
 //! s_j; sweeps of these always converge, and between them Newton's method on the rings that slip does so quadratically.
 
-use super::mesh::Vector;
+use super::stiffness::Vector;
 
 /// Sweeps of one step at the most. Some five do, with a step of Newton's method before each.
 const MOST_SWEEPS: usize = 2_000;
@@ -221,20 +221,20 @@ fn factorise_and_solve(matrix: &mut [f64], column: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mesh::Mesh;
+    use super::super::stiffness::RingStiffness;
     use super::{MOST_SWEEPS, Workspace, solve_in};
 
     #[test]
     fn what_too_few_sweeps_leave_bounds_the_error_of_the_force() {
-        let mesh = Mesh::new(40);
+        let matrix = RingStiffness::new(40);
         // The load of a ball, and a displacement that lets the outer rings slip, in a direction that turns.
-        let bounds: Vec<f64> = (0..40).map(|ring| mesh.together()[ring] * (1.0 - mesh.radius(ring))).collect();
+        let bounds: Vec<f64> = (0..40).map(|ring| matrix.together()[ring] * (1.0 - matrix.radius(ring))).collect();
         let forces: Vec<[f64; 2]> = (0..40)
-            .map(|ring| [0.5 * mesh.together()[ring], 0.4 * mesh.together()[ring] * mesh.radius(ring)])
+            .map(|ring| [0.5 * matrix.together()[ring], 0.4 * matrix.together()[ring] * matrix.radius(ring)])
             .collect();
         let solved = |sweeps: usize| {
             let (mut traction, mut slip) = (vec![[0.0; 2]; 40], vec![[0.0; 2]; 40]);
-            let (stiffness, state) = (mesh.stiffness(false), (&mut traction[..], &mut slip[..]));
+            let (stiffness, state) = (matrix.stiffness(false), (&mut traction[..], &mut slip[..]));
             let left = solve_in(sweeps, stiffness, &bounds, &forces, state, &mut Workspace::default());
             (left, traction)
         };

@@ -1,11 +1,10 @@
 //! The extrapolated result of several discretisations, and how far it may be off.
 
+use super::discretisation::Discretisation;
 use super::field::Field;
 use super::follow::Scene;
-use super::level::Level;
-use super::mesh::Vector;
-use crate::contact::Contact;
-use crate::contact::state::{Regime, State};
+use super::stiffness::Vector;
+use crate::contact::state::Regime;
 
 /// The state after a move in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,65 +102,64 @@ impl Blend {
     }
 
     /// Adds the state after the move of this number.
-    pub(super) fn add(&mut self, scene: &Scene<'_>, levels: &[Level; 4], index: usize) {
+    pub(super) fn add(&mut self, scene: &Scene<'_>, runs: &[Discretisation; 4], index: usize) {
         let load = scene.loads[index + 1];
-        let value = |of: &dyn Fn(&Level) -> f64| blended([0, 1, 2, 3].map(|level| of(&levels[level])));
-        let error = |of: &dyn Fn(&Level) -> f64| estimates([0, 1, 2, 3].map(|level| of(&levels[level])));
-        let pair = |of: fn(&Level) -> Vector| [0, 1].map(|axis| value(&|level| of(level)[axis]));
-        let errors = |of: fn(&Level) -> Vector| {
-            let [x, y] = [0, 1].map(|axis| error(&|level| of(level)[axis]));
+        let value = |of: &dyn Fn(&Discretisation) -> f64| blended([0, 1, 2, 3].map(|run| of(&runs[run])));
+        let error = |of: &dyn Fn(&Discretisation) -> f64| estimates([0, 1, 2, 3].map(|run| of(&runs[run])));
+        let pair = |of: fn(&Discretisation) -> Vector| [0, 1].map(|axis| value(&|run| of(run)[axis]));
+        let errors = |of: fn(&Discretisation) -> Vector| {
+            let [x, y] = [0, 1].map(|axis| error(&|run| of(run)[axis]));
             [x[0].hypot(y[0]), x[1].hypot(y[1])]
         };
-        let fine = &levels[3];
-        let limit: f64 = fine.bounds.iter().sum();
-        let mut force = pair(|level| level.force);
+        let fine = &runs[3];
+        let limit = fine.limit();
+        let mut force = pair(|run| run.force);
         let size = force[0].hypot(force[1]);
         if size > limit {
             force = force.map(|component| component / size * limit);
         }
-        let displacement = pair(|level| level.displacement);
-        let energy = scene.unit_force * scene.unit_displacement;
-        let unit = scene.contact.friction() * scene.largest_load / scene.unit_force;
-        let of_force = errors(|level| level.force);
-        let of_displacement = errors(|level| level.displacement);
+        let displacement = pair(|run| run.displacement);
+        let (unit, full) = (scene.contact.friction() * scene.largest_load, scene.units.full);
+        let of_force = errors(|run| run.force);
+        let of_displacement = errors(|run| run.displacement);
         for kind in 0..2 {
             let relative = if unit > 0.0 { of_force[kind] / unit } else { 0.0 };
-            self.errors[kind] = self.errors[kind].max(relative).max(of_displacement[kind]);
+            self.errors[kind] = self.errors[kind].max(relative).max(of_displacement[kind] / full);
         }
         // What the search for the slip has left, of as many rings as there are.
-        let unsettled = levels.iter().map(|level| level.mesh.count as f64 * level.unsettled).fold(0.0, f64::max);
+        let unsettled = runs.iter().map(|run| run.matrix.count as f64 * run.unsettled).fold(0.0, f64::max);
         if unit > 0.0 {
             self.errors[0] = self.errors[0].max(unsettled / unit);
         }
         let share = limit / unit;
         if share > 0.0 {
-            self.errors[1] = self.errors[1].max(share * scene.least_error(touching(fine)));
+            self.errors[1] = self.errors[1].max(share * scene.least_error(fine.touching()));
         }
-        let [by_steps, by_rings] = error(&|level| level.dissipated.iter().sum());
+        let [by_steps, by_rings] = error(&|run| run.dissipated.iter().sum());
         self.work_error =
-            self.work_error.max(if unit > 0.0 { (by_steps + WORK_BY_RINGS * by_rings) / unit } else { 0.0 });
+            self.work_error.max(if unit > 0.0 { (by_steps + WORK_BY_RINGS * by_rings) / (unit * full) } else { 0.0 });
         let before = self.states.last().map_or(0.0, |state| state.dissipated_energy);
-        let dissipated = value(&|level| level.dissipated.iter().sum()) * energy;
+        let dissipated = value(&|run| run.dissipated.iter().sum());
         self.raised = self.raised.max(before - dissipated);
         let (stick_radius, regime) = stick(scene, fine, load.indentation, load.radius);
         self.states.push(PlanarState {
-            displacement: displacement.map(|component| component * scene.unit_displacement),
-            force: force.map(|component| component * scene.unit_force),
+            displacement,
+            force,
             indentation: load.indentation,
             normal_force: load.normal_force,
             contact_radius: if load.indentation < 0.0 { 0.0 } else { load.radius },
             stick_radius,
             regime,
             dissipated_energy: dissipated + self.raised,
-            elastic_energy: (value(&|level| level.elastic) * energy).max(0.0),
-            work: value(&|level| level.work) * energy + self.raised,
+            elastic_energy: value(&|run| run.elastic).max(0.0),
+            work: value(&|run| run.work) + self.raised,
         });
     }
 
-    pub(super) fn solution(self, scene: &Scene<'_>, levels: &[Level; 4]) -> Solution {
-        let field = Field::new(scene, levels);
+    pub(super) fn solution(self, scene: &Scene<'_>, runs: &[Discretisation; 4]) -> Solution {
+        let field = Field::new(scene, runs);
         let Blend { states, errors, work_error, steps, .. } = self;
-        Solution { states, count: levels[3].mesh.count, steps, work_error, errors, field }
+        Solution { states, count: runs[3].matrix.count, steps, work_error, errors, field }
     }
 }
 
@@ -176,60 +174,14 @@ impl Scene<'_> {
     }
 }
 
-/// How many rings are in contact.
-pub(super) fn touching(level: &Level) -> usize {
-    level.bounds.iter().take_while(|bound| **bound > 0.0).count()
-}
-
-fn stick(scene: &Scene<'_>, level: &Level, indentation: f64, radius: f64) -> (f64, Regime) {
+fn stick(scene: &Scene<'_>, run: &Discretisation, indentation: f64, radius: f64) -> (f64, Regime) {
     if indentation < 0.0 {
         return (0.0, Regime::Separated);
     }
-    match level.slipped.iter().take(touching(level)).position(|slipped| *slipped) {
+    match run.first_slip {
         _ if scene.contact.friction() <= 0.0 => (0.0, Regime::GrossSlip),
-        None => (radius, Regime::Stick),
-        Some(0) => (0.0, Regime::GrossSlip),
-        Some(first) => ((scene.reach * level.mesh.radius(first)).min(radius), Regime::PartialSlip),
-    }
-}
-
-impl Solution {
-    /// A path along one line, by the exact contact after it and the states on the way: without rings.
-    pub(super) fn along_line(scene: &Scene<'_>, contact: Contact, direction: Vector, states: &[State]) -> Solution {
-        let errors = [contact.path_error(), 0.0];
-        let states = states.iter().map(|state| planar(state, direction)).collect();
-        let field = Field::along_line(scene, contact, direction);
-        Solution { states, count: 0, steps: 0, work_error: errors[0], errors, field }
-    }
-
-    /// Puts the exact states of the first moves, along a line, in the place of those of the rings, and begins the work
-    /// after them there.
-    pub(super) fn replace(&mut self, exact: &[State], direction: Vector) {
-        let mut ahead = 0.0;
-        for (state, exact) in self.states.iter_mut().zip(exact) {
-            ahead = exact.dissipated_energy - state.dissipated_energy;
-            *state = planar(exact, direction);
-        }
-        for later in self.states.iter_mut().skip(exact.len()) {
-            later.dissipated_energy += ahead;
-            later.work += ahead;
-        }
-    }
-}
-
-/// A state along the line of this direction.
-fn planar(exact: &State, direction: Vector) -> PlanarState {
-    let pair = |size: f64| direction.map(|component| component * size + 0.0);
-    PlanarState {
-        displacement: pair(exact.displacement),
-        force: pair(exact.force),
-        indentation: exact.indentation,
-        normal_force: exact.normal_force,
-        contact_radius: exact.contact_radius,
-        stick_radius: exact.stick_radius,
-        regime: exact.regime,
-        dissipated_energy: exact.dissipated_energy,
-        elastic_energy: exact.elastic_energy,
-        work: exact.dissipated_energy + exact.elastic_energy,
+        first if first >= run.touching() => (radius, Regime::Stick),
+        0 => (0.0, Regime::GrossSlip),
+        first => ((scene.reach * run.matrix.radius(first)).min(radius), Regime::PartialSlip),
     }
 }

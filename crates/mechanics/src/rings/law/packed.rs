@@ -23,7 +23,7 @@ impl Packed for Vector {
 impl PlanarLaw {
     /// Numbers that distinguish laws.
     fn marks(&self) -> Vec<f64> {
-        self.contact.definition_marks().into_iter().chain([self.meshes.len() as f64]).collect()
+        self.contact.definition_marks().into_iter().chain([self.matrices.len() as f64]).collect()
     }
 
     /// The state of a contact of this law as bytes, which [`PlanarLaw::unpack`] of the same program reads.
@@ -88,7 +88,7 @@ impl PlanarLaw {
         let [_, load] = self.load(Normal::Indentation(indentation)).ok()?;
         let pressed = if indentation < 0.0 { 0.0 } else { self.contact.indenter.radius(indentation) };
         let covered = if area > 0.0 { count == state.touching() as usize } else { count == 0 };
-        let sound = covered && count <= self.meshes.len() && radius.to_bits() == pressed.to_bits();
+        let sound = covered && count <= self.matrices.len() && radius.to_bits() == pressed.to_bits();
         (sound && (load - normal_force).abs() <= SAME_LOAD * load).then_some(state)
     }
 }

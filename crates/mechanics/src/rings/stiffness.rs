@@ -10,7 +10,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Rings between the radii sqrt(j/N).
 #[derive(Debug)]
-pub(super) struct Mesh {
+pub(super) struct RingStiffness {
     pub(super) count: usize,
     /// The force on each ring by the displacements of all, row by row.
     stiffness: Vec<f64>,
@@ -22,8 +22,8 @@ pub(super) struct Mesh {
     pub(super) total: f64,
 }
 
-impl Mesh {
-    pub(super) fn new(count: usize) -> Mesh {
+impl RingStiffness {
+    pub(super) fn new(count: usize) -> RingStiffness {
         let overlap = |j: usize, k: usize| overlap((j as f64 / count as f64).sqrt(), (k as f64 / count as f64).sqrt());
         let overlaps: Vec<f64> =
             (0..=count).flat_map(|j| (0..=count).map(move |k| overlap(j.max(k), j.min(k)))).collect();
@@ -43,7 +43,7 @@ impl Mesh {
         for (row, own) in held.chunks_exact_mut(count).zip(&together) {
             row.iter_mut().zip(&together).for_each(|(entry, other)| *entry -= own * other / total);
         }
-        Mesh { count, stiffness, held, together, total }
+        RingStiffness { count, stiffness, held, together, total }
     }
 
     /// The stiffness, row by row: against given displacements, or under a given sum of forces.
@@ -51,7 +51,7 @@ impl Mesh {
         if force_given { &self.held } else { &self.stiffness }
     }
 
-    /// The share of each ring in the force that all carry when they move together, times [`Mesh::total`].
+    /// The share of each ring in the force that all carry when they move together, times [`RingStiffness::total`].
     pub(super) fn together(&self) -> &[f64] {
         &self.together
     }
@@ -64,16 +64,6 @@ impl Mesh {
 
 /// A vector in the plane.
 pub(super) type Vector = [f64; 2];
-
-/// The product of a square matrix with a column of vectors.
-pub(super) fn times(matrix: &[f64], column: &[Vector], product: &mut [Vector]) {
-    for (row, sum) in matrix.chunks_exact(column.len()).zip(product) {
-        *sum = row
-            .iter()
-            .zip(column)
-            .fold([0.0; 2], |sum, (entry, value)| [sum[0] + entry * value[0], sum[1] + entry * value[1]]);
-    }
-}
 
 /// int_0^s sqrt(r^2 - t^2) sqrt(s^2 - t^2) dt for s <= r: with k = s/r it is s^2 r [(1 + k^2) E(k) - (1 - k^2) K(k)]/(3
 /// k^2), with the complete elliptic integrals by the arithmetic-geometric mean (Abramowitz & Stegun 1972, 17.6).
@@ -123,7 +113,7 @@ fn inverse(mut matrix: Vec<f64>, size: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Mesh, overlap};
+    use super::{RingStiffness, overlap};
     use crate::numerics::gauss::{TWENTY_POINTS, integral};
 
     #[test]
@@ -144,7 +134,8 @@ mod tests {
     #[test]
     fn rings_that_move_together_are_as_stiff_as_a_flat_punch() {
         // 2 G* a, Mindlin (1949); the mean displacement of a ring knows less than every point of it.
-        let errors: Vec<f64> = [10, 20, 40].into_iter().map(|count| Mesh::new(count).total / 2.0 - 1.0).collect();
+        let errors: Vec<f64> =
+            [10, 20, 40].into_iter().map(|count| RingStiffness::new(count).total / 2.0 - 1.0).collect();
         assert!(errors[2].abs() < 4e-3, "{errors:?}");
         assert!(errors.windows(2).all(|pair| pair[1].abs() < 0.6 * pair[0].abs()), "{errors:?}");
     }
