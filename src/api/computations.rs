@@ -7,9 +7,10 @@ use axum::extract::{FromRequestParts as _, Request, State};
 use axum::http::{HeaderMap, header};
 use axum::response::Response;
 use axum::routing::post;
-use serde_json::json;
-use utoipa::openapi::RefOr;
-use utoipa::openapi::path::{HttpMethod, Operation, PathItem, PathsBuilder};
+use utoipa::openapi::example::ExampleBuilder;
+use utoipa::openapi::path::{HttpMethod, Operation, OperationBuilder, PathItem, PathsBuilder};
+use utoipa::openapi::request_body::RequestBodyBuilder;
+use utoipa::openapi::{ContentBuilder, Ref, RefOr, Required, ResponseBuilder};
 use uuid::Uuid;
 
 use crate::admission::Deadline;
@@ -27,6 +28,8 @@ use super::reply;
 use super::request_context::RequestContext;
 use super::state::{App, TenantApp};
 
+const JSON: &str = "application/json";
+
 impl Routes {
     /// Adds the route of a computation, and the schemas of its documents.
     pub fn add_computation(&mut self, entry: Entry) {
@@ -42,20 +45,20 @@ impl Routes {
 
 /// The operation of a computation.
 fn operation(Entry { about, examples, .. }: &Entry, route: Route, schemas: &Schemas) -> Operation {
-    let document = |name: &str| json!({"schema": {"$ref": format!("#/components/schemas/{name}")}});
-    let example = |Example { name, summary, value }| (name, json!({"summary": summary, "value": value}));
-    let mut request = document(&schemas.request);
-    request["examples"] = examples().into_iter().map(example).collect();
-    let reply = document(&schemas.reply);
-    let operation = json!({
-        "tags": [route.tag],
-        "summary": about.title,
-        "description": about.description,
-        "operationId": route.operation,
-        "requestBody": {"required": true, "content": {"application/json": request}},
-        "responses": {"200": {"description": about.reply, "content": {"application/json": reply}}},
-    });
-    let mut operation: Operation = serde_json::from_value(operation).unwrap_or_default();
+    let document = |name: &str| ContentBuilder::new().schema(Some(Ref::from_schema_name(name)));
+    let example =
+        |Example { name, summary, value }| (name, ExampleBuilder::new().summary(summary).value(Some(value)).build());
+    let request = document(&schemas.request).examples_from_iter(examples().into_iter().map(example)).build();
+    let body = RequestBodyBuilder::new().required(Some(Required::True)).content(JSON, request);
+    let response = ResponseBuilder::new().description(about.reply).content(JSON, document(&schemas.reply).build());
+    let mut operation = OperationBuilder::new()
+        .tag(route.tag)
+        .summary(Some(about.title))
+        .description(Some(about.description))
+        .operation_id(Some(route.operation))
+        .request_body(Some(body.build()))
+        .response("200", response.build())
+        .build();
     if about.formats.len() > 1 {
         let mut parameters = vec![described_format(about.formats, about.shows)];
         parameters.extend(

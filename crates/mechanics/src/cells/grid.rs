@@ -56,19 +56,15 @@ struct Fit {
 }
 
 /// What a cell is made of: the shape and the kink beneath.
-struct Above<'a, S: ?Sized> {
-    shape: &'a S,
+struct Above<'a> {
+    shape: &'a dyn Shape,
     kink: Kink,
     base: DoubleDouble,
 }
 
 /// The cells of a shape up to a radius `end`, m, of contacts from the radius `start`, m, on; `None` once `keep_going`
 /// has returned false.
-pub(super) fn cells<S: Shape + ?Sized>(
-    shape: &S,
-    (start, end): (f64, f64),
-    keep_going: &dyn Fn() -> bool,
-) -> Option<Cells> {
+pub(super) fn cells(shape: &dyn Shape, (start, end): (f64, f64), keep_going: &dyn Fn() -> bool) -> Option<Cells> {
     let kinks = shape.kinks();
     let (mut cells, end) = (Vec::new(), DoubleDouble::square_of(end));
     for (index, &kink) in kinks.iter().enumerate() {
@@ -141,7 +137,7 @@ fn tip(power: f64) -> f64 {
     if power > 1.0 { f64::EPSILON.powf((power - 1.0).recip()).clamp(TIP, 0.5) } else { TIP }
 }
 
-impl<S: Shape + ?Sized> Above<'_, S> {
+impl Above<'_> {
     /// The cell above the kink, and its width in squares, m^2, at most this.
     fn first(&self, widest: f64) -> (Cell, f64) {
         let fit = |width: f64| {

@@ -162,9 +162,11 @@ pub(crate) trait Shape {
     fn curvature_radius(&self) -> Option<f64> {
         None
     }
+}
 
+impl dyn Shape + '_ {
     /// Its cells that reach beyond something, or to its end; `None` once `keep_going` has returned false.
-    fn cells_while(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
+    pub(crate) fn cells_while(&self, reach: Reach, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
         self.stages().up_to(self, reach, keep_going)
     }
 }

@@ -60,12 +60,7 @@ impl Stages {
     }
 
     /// The cells of a shape that reach beyond something, or to its end; `None` once `keep_going` has returned false.
-    pub(crate) fn up_to<S: Shape + ?Sized>(
-        &self,
-        shape: &S,
-        reach: Reach,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Option<&Cells> {
+    pub(crate) fn up_to(&self, shape: &dyn Shape, reach: Reach, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
         if let Some(cells) = self.everything() {
             return Some(cells);
         }
@@ -98,7 +93,7 @@ impl Stages {
         std::iter::successors(self.0.get(), |stage| stage.next.get()).map(Box::as_ref)
     }
 
-    fn stage<S: Shape + ?Sized>(&self, shape: &S, number: i32, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
+    fn stage(&self, shape: &dyn Shape, number: i32, keep_going: &dyn Fn() -> bool) -> Option<&Cells> {
         if let Some(stage) = self.built().find(|stage| stage.number == number) {
             return Some(&stage.cells);
         }
@@ -133,7 +128,7 @@ fn number(radius: f64) -> i32 {
 }
 
 /// The first stage up to `last` at whose end g times a weight exceeds a value.
-fn first_above<S: Shape + ?Sized>(shape: &S, last: i32, weight: impl Fn(f64) -> f64, value: f64) -> i32 {
+fn first_above(shape: &dyn Shape, last: i32, weight: impl Fn(f64) -> f64, value: f64) -> i32 {
     let (mut low, mut high) = (LOWEST, last);
     while low < high {
         let middle = low + (high - low) / 2;

@@ -3,6 +3,7 @@
 //! A request for resources that are in use waits for a bounded time in a queue of bounded length, and is then refused.
 //! So the memory of requests is bounded too, however many arrive.
 
+use std::any::Any;
 use std::future::Future;
 use std::pin::pin;
 use std::sync::Arc;
@@ -278,7 +279,7 @@ impl Pool {
         while let Some(slot) = self.0.threads.another(&client, kind) {
             slots.push(slot);
         }
-        self.on_thread(slots.len(), move || work(slots)).await
+        self.on_thread(slots.len(), boxed(move || work(slots))).await.map(unboxed)
     }
 
     /// Runs `work`: in place if its estimated cost is below [`INLINE`], else on a thread of the blocking pool, which it
@@ -299,22 +300,20 @@ impl Pool {
             return Ok(self.0.meters.timed(work));
         }
         // In a box, so that short work is not as large as long work.
-        Box::pin(async move {
-            let slot = self.wait_for_slot(Client::current(), Kind::of(cost)).await?;
-            let request = Span::current();
-            // The slot stays with the work: a caller that gives up does not free a thread that is still busy.
-            self.on_thread(1, move || request.in_scope(|| slot.work(work))).await
-        })
-        .await
+        Box::pin(self.on_slot(cost, boxed(work))).await.map(unboxed)
+    }
+
+    /// Waits for a slot, and runs `work` with it.
+    async fn on_slot(&self, cost: Nanoseconds, work: Work) -> Result<Done, PoolError> {
+        let slot = self.wait_for_slot(Client::current(), Kind::of(cost)).await?;
+        let request = Span::current();
+        // The slot stays with the work: a caller that gives up does not free a thread that is still busy.
+        self.on_thread(1, Box::new(move || request.in_scope(|| slot.work(work)))).await
     }
 
     /// Runs `work` on a thread of the blocking pool; it counts as so many pieces. It owns what its request holds: a
     /// caller that gives up frees no memory that is still in use.
-    async fn on_thread<T: Send + 'static>(
-        &self,
-        pieces: usize,
-        work: impl FnOnce() -> T + Send + 'static,
-    ) -> Result<T, PoolError> {
+    async fn on_thread(&self, pieces: usize, work: Work) -> Result<Done, PoolError> {
         let (meters, owned) = (Arc::clone(&self.0.meters), Admission::current());
         let task = spawn_blocking(move || {
             let _owned = owned;
@@ -323,6 +322,19 @@ impl Pool {
         });
         task.await.map_err(|_| PoolError::Panicked)
     }
+}
+
+/// Work on a thread, and what it gives, in boxes: the task of the runtime is compiled once, and not for each kind of
+/// work.
+type Work = Box<dyn FnOnce() -> Done + Send>;
+type Done = Box<dyn Any + Send>;
+
+fn boxed<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> Work {
+    Box::new(move || Box::new(work()))
+}
+
+fn unboxed<T: 'static>(done: Done) -> T {
+    *done.downcast().expect("what the work of this call gives is of its type")
 }
 
 impl Kind {
