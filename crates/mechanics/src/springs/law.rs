@@ -80,7 +80,9 @@ impl SpringLaw<'_> {
         match self {
             SpringLaw::Coulomb(law) => row.rooms_by_memory(law.prony),
             SpringLaw::Twist(law) => {
-                law.bounds_at(&row.levels, row.width, &vec![0.0; row.len()], [0.0, row.indentation])
+                let mut bounds = vec![0.0; row.len()];
+                law.change_bounds(&row.levels, row.width, &mut bounds, [0.0, row.indentation]);
+                bounds
             }
         }
     }

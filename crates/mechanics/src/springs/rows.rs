@@ -27,6 +27,71 @@ pub(crate) struct Rows {
     pub(crate) path_error: f64,
 }
 
+/// Steps that go on from each other, and change nothing of the rows at their beginning.
+pub(crate) struct Walk<'a> {
+    begin: &'a Rows,
+    here: Option<Rows>,
+    /// After the step that was made last, and the finer row in the middle of it.
+    pub(crate) next: Rows,
+    middle: Row,
+    scratch: [Scratch; 2],
+}
+
+impl<'a> Walk<'a> {
+    pub(crate) fn from(begin: &'a Rows) -> Walk<'a> {
+        let scratch = [Scratch::default(), Scratch::default()];
+        Walk { begin, here: None, next: begin.beside(), middle: begin.fine.beside(), scratch }
+    }
+
+    /// Where the next step begins.
+    pub(crate) fn here(&self) -> &Rows {
+        self.here.as_ref().unwrap_or(self.begin)
+    }
+
+    /// One or two steps of the finer row to the ends of equal parts of a time, s, and one of the other row to the last
+    /// of them, each along a parabola that is by so much, m, beyond straight in the middle: `bow` of the other row. The
+    /// states of the finer row.
+    pub(crate) fn step<const N: usize>(
+        &mut self,
+        law: &SpringLaw<'_>,
+        time: f64,
+        parts: [([Led; 2], [f64; 2]); N],
+        bow: [f64; 2],
+    ) -> Result<[[f64; 4]; N], (usize, Slides)> {
+        let Walk { begin, here, next, middle, scratch } = self;
+        let from = here.as_ref().unwrap_or(begin);
+        let (share, mut states) = (time / N as f64, [[0.0; 4]; N]);
+        next.slip_from = here.as_ref().and_then(|here| here.slip_from);
+        (next.time, next.beyond, next.steps) = (from.time, from.beyond, from.steps + N);
+        (next.largest, next.errors, next.path_error) = (from.largest, from.errors, from.path_error);
+        for (index, led) in parts.into_iter().enumerate() {
+            let (row, after) = match index {
+                0 if N > 1 => (&from.fine, &mut *middle),
+                0 => (&from.fine, &mut next.fine),
+                _ => (&*middle, &mut next.fine),
+            };
+            let slipped = row.step(law, share, led, after, &mut scratch[0]).map_err(|slides| (index, slides))?;
+            next.slip_from = next.slip_from.into_iter().chain(slipped.from).reduce(f64::min);
+            next.beyond |= slipped.beyond;
+            states[index] = after.state();
+        }
+        let led = (parts[N - 1].0, bow);
+        from.coarse.step(law, time, led, &mut next.coarse, &mut scratch[1]).map_err(|slides| (N - 1, slides))?;
+        Ok(states)
+    }
+
+    /// Goes on from the step that was made last.
+    pub(crate) fn accept(&mut self) {
+        let spare = self.here.take().unwrap_or_else(|| self.begin.beside());
+        self.here = Some(std::mem::replace(&mut self.next, spare));
+    }
+
+    /// The rows after all steps.
+    pub(crate) fn end(self) -> Rows {
+        self.here.unwrap_or_else(|| self.begin.clone())
+    }
+}
+
 impl Rows {
     /// So many springs from the centre to the edge of a row at an indentation, m, that reaches a contact radius, m.
     pub(crate) fn new(law: &SpringLaw<'_>, count: usize, [indentation, radius]: [f64; 2]) -> Rows {
@@ -45,34 +110,9 @@ impl Rows {
         }
     }
 
-    /// Makes it equal to others without asking for memory.
-    pub(crate) fn take_from(&mut self, other: &Rows) {
-        self.fine.take_from(&other.fine);
-        self.coarse.take_from(&other.coarse);
-        let Rows { fine: _, coarse: _, time, slip_from, beyond, steps, largest, errors, path_error } = *other;
-        (self.time, self.slip_from, self.beyond, self.steps) = (time, slip_from, beyond, steps);
-        (self.largest, self.errors, self.path_error) = (largest, errors, path_error);
-    }
-
-    /// Steps of the finer row to the ends of equal parts of a time, s, and one of the other row to the last of them.
-    /// The states of the finer row.
-    pub(crate) fn step<const N: usize>(
-        &mut self,
-        law: &SpringLaw<'_>,
-        time: f64,
-        targets: [[Led; 2]; N],
-        scratch: &mut [Scratch; 2],
-    ) -> Result<[[f64; 4]; N], (usize, Slides)> {
-        let (part, mut states) = (time / N as f64, [[0.0; 4]; N]);
-        for (index, target) in targets.into_iter().enumerate() {
-            let slipped = self.fine.step(law, part, target, &mut scratch[0]).map_err(|slides| (index, slides))?;
-            self.slip_from = self.slip_from.into_iter().chain(slipped.from).reduce(f64::min);
-            self.beyond |= slipped.beyond;
-            states[index] = self.fine.state();
-        }
-        self.coarse.step(law, time, targets[N - 1], &mut scratch[1]).map_err(|slides| (N - 1, slides))?;
-        self.steps += N;
-        Ok(states)
+    /// Others on the same springs, for what a step finds.
+    fn beside(&self) -> Rows {
+        Rows { fine: self.fine.beside(), coarse: self.coarse.beside(), ..*self }
     }
 
     /// Takes the difference of the rows into the stated error.

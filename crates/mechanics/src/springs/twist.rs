@@ -12,8 +12,8 @@
 use std::f64::consts::PI;
 
 use super::law::SpringLaw;
-use super::row::{Led, Row, Scratch, Slides};
-use super::rows::Rows;
+use super::row::{Led, Row, Slides};
+use super::rows::{Rows, Walk};
 use super::stress::from_displacements;
 use crate::indenter::Indenter;
 use crate::numerics::gauss::EIGHT_POINTS;
@@ -80,29 +80,27 @@ impl TwistLaw<'_> {
         complete((x / radius).min(1.0))[0] / radius
     }
 
-    /// The bounds of springs at these levels, m, at another indentation, m.
-    pub(super) fn bounds_at(&self, levels: &[f64], width: f64, bounds: &[f64], [from, to]: [f64; 2]) -> Vec<f64> {
+    /// Brings the bounds of springs at these levels, m, to another indentation, m.
+    pub(super) fn change_bounds(&self, levels: &[f64], width: f64, bounds: &mut [f64], [from, to]: [f64; 2]) {
         let [low, high] = [from.min(to), from.max(to)].map(|level| level.max(0.0));
         let mut shared = Vec::new();
         if high > low {
             self.panels([low, high], |radius, weight| shared.push((radius, weight)));
         }
-        let springs = levels.iter().zip(bounds).enumerate();
-        springs
-            .map(|(index, (&level, &bound))| {
-                let x = (index as f64 + 0.5) * width;
-                if to <= level {
-                    return 0.0;
-                }
-                let mut change = 0.0;
-                if level <= low && self.indenter.radius(low) >= x {
-                    change = shared.iter().map(|(radius, weight)| weight * TwistLaw::rate(x, *radius)).sum();
-                } else {
-                    self.panels([level.max(low), high], |radius, weight| change += weight * TwistLaw::rate(x, radius));
-                }
-                if to > from { bound + change } else { (bound - change).max(0.0) }
-            })
-            .collect()
+        for (index, (&level, bound)) in levels.iter().zip(bounds).enumerate() {
+            let x = (index as f64 + 0.5) * width;
+            if to <= level {
+                *bound = 0.0;
+                continue;
+            }
+            let mut change = 0.0;
+            if level <= low && self.indenter.radius(low) >= x {
+                change = shared.iter().map(|(radius, weight)| weight * TwistLaw::rate(x, *radius)).sum();
+            } else {
+                self.panels([level.max(low), high], |radius, weight| change += weight * TwistLaw::rate(x, radius));
+            }
+            *bound = if to > from { *bound + change } else { (*bound - change).max(0.0) };
+        }
     }
 }
 
@@ -193,24 +191,25 @@ impl Rows {
         count: usize,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Rows, Error> {
-        let mut after = Rows { slip_from: None, ..self.clone() };
-        let mut scratch = [Scratch::default(), Scratch::default()];
+        let mut walk = Walk::from(self);
         let (TwistPath::Angle { to: target, .. } | TwistPath::Torque { to: target, .. }) = path;
         let refused = |(_, Slides(limit))| Error::TorqueExceedsFriction { target, limit };
         let led = |step: usize| {
             let part = step as f64 / count as f64;
-            [Led::Place(level(part).max(0.0)), path.at(part)]
+            ([Led::Place(level(part).max(0.0)), path.at(part)], [0.0; 2])
         };
         for step in (0..count).step_by(2) {
             if !keep_going() {
                 return Err(Error::Interrupted);
             }
             if count > 1 {
-                after.step(law, 0.0, [led(step + 1), led(step + 2)], &mut scratch).map_err(refused)?;
+                walk.step(law, 0.0, [led(step + 1), led(step + 2)], [0.0; 2]).map_err(refused)?;
             } else {
-                after.step(law, 0.0, [led(1)], &mut scratch).map_err(refused)?;
+                walk.step(law, 0.0, [led(1)], [0.0; 2]).map_err(refused)?;
             }
+            walk.accept();
         }
+        let mut after = walk.end();
         after.note_error(law);
         Ok(after)
     }

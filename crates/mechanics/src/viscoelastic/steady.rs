@@ -9,7 +9,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::prony::{Kernel, MOST_TERMS, Prony};
+use super::prony::{MOST_TERMS, Prony};
 use crate::numerics::roots::between;
 
 /// Phases are known to this.
@@ -103,10 +103,6 @@ impl<'a> Wave<'a> {
         self.prony.relaxed()
     }
 
-    fn kernel(&self, angle: f64) -> Kernel {
-        self.prony.kernel(angle / self.rate)
-    }
-
     /// u less the displacement while the spring sticks: minus half of what slips in half a turn.
     fn offset(&self, of: &Loop) -> f64 {
         of.bound + self.prony.kept(&of.v[..self.terms.len()]) - of.stick.cos()
@@ -133,7 +129,7 @@ impl<'a> Wave<'a> {
     fn slide(&self, v: &mut [f64; MOST_TERMS], bound: f64, angle: f64) {
         let (end, v) = (bound / self.prony.relaxed(), &mut v[..self.terms.len()]);
         v.iter_mut().for_each(|v| *v += end);
-        self.prony.relax(&self.kernel(angle), v);
+        self.prony.relax(angle / self.rate, v);
         v.iter_mut().for_each(|v| *v -= end);
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::indenter::Indenter;
 use crate::profile::{Profile, Sphere};
-use crate::springs::row::Row;
+use crate::springs::row::{Row, Scratch};
 
 fn ball() -> Indenter {
     Profile::Sphere(Sphere::new(1.0).unwrap()).indenter()
@@ -28,7 +28,9 @@ fn pressing_and_holding_a_ball_meet_lee_and_radok() {
         SpringLaw::Coulomb(CoulombLaw { indenter: &indenter, prony: &prony, stiffness: [7.4, 7.4], friction: 0.5 });
     let mut row = Row::new(&law, 32_768, 0.0, 0.1);
     let mut force = |to: f64, time: f64| {
-        row.step(&law, time, [Led::Place(to), Led::Place(0.0)], &mut Scratch::default()).unwrap();
+        let (mut after, targets) = (row.clone(), [Led::Place(to), Led::Place(0.0)]);
+        row.step(&law, time, (targets, [0.0; 2]), &mut after, &mut Scratch::default()).unwrap();
+        row = after;
         row.sums[0]
     };
     let (pressed, held) = (force(0.01, 1.0), force(0.01, 0.2));

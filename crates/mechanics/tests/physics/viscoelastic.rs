@@ -60,6 +60,49 @@ fn pressing_and_holding_a_ball_meet_lee_and_radok_to_the_stated_error() {
 }
 
 #[test]
+fn the_contact_radius_is_that_of_the_profile_until_it_shrinks_and_tings_from_then_on() {
+    let (ratio, time, depth) = (0.7, 0.5, 0.02);
+    // int_0^x R(t) dt
+    let integral = |x: f64| (1.0 - ratio) * x + ratio * time * (1.0 - (-x / time).exp());
+    for profile in [0, 1, 2].map(|shape| shapes().swap_remove(shape)) {
+        let indenter = profile.indenter();
+        let start = contact(profile.clone(), law(&[(ratio, time)]), (2.0, 1.6), Preload::Indentation(depth));
+        let grown = |contact: &Contact| {
+            let (found, expected) = (contact.contact_radius(), indenter.radius(contact.indentation()));
+            assert!((found / expected - 1.0).abs() < 1e-9, "{profile:?}: {found} {expected}");
+        };
+        let mut held = start.clone();
+        let load = Move { normal: Some(Normal::NormalForce(held.normal_force())), ..wait(1.0) };
+        for step in [wait(0.01), wait(1.0), load, wait(30.0), press(3.0 * depth, 3.0), wait(0.1)] {
+            held.apply_within(&step, 1e-3).unwrap();
+            grown(&held);
+        }
+        // Pressed evenly for a second, then withdrawn: the radius is the one at the time t_1 of the first press for
+        // which int_(t_1)^t R(t - s) d'(s) ds = 0 (Ting 1966).
+        for rate in [0.01, 0.3, 2.0] {
+            let mut moved = contact(profile.clone(), law(&[(ratio, time)]), (2.0, 1.6), Preload::NormalForce(0.0));
+            moved.apply(&press(depth, 1.0)).unwrap();
+            grown(&moved);
+            let back = 0.4 * (0.3_f64 / rate).min(1.0);
+            for part in [0.25, 0.5, 0.75, 1.0].map(|part| part * back) {
+                let late = integral(part);
+                let [mut low, mut high] = [0.0, 1.0];
+                for _ in 0..60 {
+                    let middle = 0.5 * (low + high);
+                    let balance = integral(1.0 + part - middle) - late - rate * late;
+                    if balance > 0.0 { low = middle } else { high = middle }
+                }
+                let expected = indenter.radius(depth * low);
+                let here = moved.state().time.unwrap() - 1.0;
+                moved.apply(&press(depth * (1.0 - rate * part), part - here)).unwrap();
+                let found = moved.contact_radius();
+                assert!((found / expected - 1.0).abs() < 2e-5, "{profile:?} {rate} {part}: {found} {expected}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_steady_loop_loses_what_friction_and_bodies_dissipate() {
     // Over mu F_N u_max, F_N the relaxed load and u_max the gross slip of long times: all of it, and friction alone.
     let expected = [(0.01, 0.04939, 0.03595), (0.1, 0.1677, 0.0366), (1.0, 0.6836, 0.1780), (10.0, 0.5774, 0.5060)];

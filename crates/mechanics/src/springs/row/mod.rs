@@ -102,19 +102,29 @@ impl Row {
         (index as f64 + 0.5) * self.width
     }
 
-    /// Makes it equal to another row without asking for memory.
-    pub(crate) fn take_from(&mut self, other: &Row) {
-        self.rooms.clone_from(&other.rooms);
-        self.carried.clone_from(&other.carried);
-        self.memory.iter_mut().zip(&other.memory).for_each(|(mine, other)| mine.clone_from(other));
-        let (rooms, carried) = (std::mem::take(&mut self.rooms), std::mem::take(&mut self.carried));
-        let (levels, weights) = (Arc::clone(&other.levels), Arc::clone(&other.weights));
-        *self = Row { levels, weights, rooms, carried, memory: std::mem::take(&mut self.memory), ..*other };
+    /// Another on the same springs, for what a step finds.
+    pub(super) fn beside(&self) -> Row {
+        let (levels, weights) = (Arc::clone(&self.levels), Arc::clone(&self.weights));
+        let none = || Vec::new();
+        Row { levels, weights, rooms: none(), carried: none(), memory: [none(), none()], ..*self }
+    }
+
+    /// Gives it the places of the springs of another row.
+    fn take_shape(&mut self, other: &Row) {
+        if !Arc::ptr_eq(&self.levels, &other.levels) {
+            (self.levels, self.weights) = (Arc::clone(&other.levels), Arc::clone(&other.weights));
+        }
+        (self.count, self.width, self.upright) = (other.count, other.width, other.upright);
+    }
+
+    /// Whether it does not reach a contact radius, m.
+    fn is_narrower_than(&self, radius: f64) -> bool {
+        !self.upright && radius > 0.0 && radius > self.count as f64 * self.width
     }
 
     /// Places springs up to a contact radius, m, and some more, or makes pairs of them one until they reach it.
     fn reach(&mut self, law: &SpringLaw<'_>, radius: f64) {
-        if self.upright || radius <= 0.0 || radius <= self.count as f64 * self.width {
+        if !self.is_narrower_than(radius) {
             return;
         }
         if self.width <= 0.0 {
@@ -164,25 +174,23 @@ impl Row {
         self.active = (0..self.len()).rev().find(touched).map_or(0, |last| last + 1);
     }
 
-    /// What memory keeps of one spring, of the normal side.
-    fn kept(&self, prony: &Prony, index: usize) -> f64 {
-        prony.kept_of(self.memory[0].iter().skip(index).step_by(self.len()).copied())
-    }
-
-    /// What it keeps of all, of one side.
-    fn kept_of_all(&self, prony: &Prony, side: usize) -> Vec<f64> {
-        let mut kept = vec![0.0; self.len()];
-        for (list, term) in self.memory[side].chunks_exact(self.len().max(1)).zip(prony.terms()) {
-            kept.iter_mut().zip(list).for_each(|(kept, v)| *kept += term.ratio * v);
+    /// What memory keeps of one spring, of one side.
+    fn kept(&self, prony: &Prony, side: usize, index: usize) -> f64 {
+        let (mut kept, mut place) = (0.0, index);
+        for term in prony.terms() {
+            kept += term.ratio * self.memory[side][place];
+            place += self.len();
         }
         kept
     }
 
     /// p of Coulomb's law, which follows from the memory.
     pub(super) fn rooms_by_memory(&self, prony: &Prony) -> Vec<f64> {
-        let p = |(kept, level): (f64, &f64)| self.indentation - level - kept;
-        let all = self.kept_of_all(prony, 0).into_iter().zip(&*self.levels).map(p);
-        all.map(|p| if p > 0.0 { p } else { 0.0 }).collect()
+        let pressed: Vec<f64> = self.levels.iter().map(|level| self.indentation - level).collect();
+        let mut p = Vec::new();
+        prony.loads((&self.memory[0], self.len()), (&pressed, 0..self.len()), &mut p);
+        p.iter_mut().for_each(|p| *p = p.max(0.0));
+        p
     }
 
     /// Bends the springs of the contact by `deflection` of their places, m.
@@ -206,27 +214,26 @@ impl Row {
 
     /// The least error that a row of this width can have of the sums, N or N m.
     pub(super) fn least_errors(&self, law: &SpringLaw<'_>) -> [f64; 2] {
-        let last = self.len() - usize::from(self.upright);
-        let kept = self.kept_of_all(law.prony(), 1);
-        let load = |index: usize| {
-            let q = if self.rooms[index] > 0.0 { self.carried[index] - kept[index] } else { 0.0 };
-            [self.weights[index] * law.normal_unit() * self.rooms[index], self.weights[index] * q]
-        };
-        let loads: Vec<[f64; 2]> = (0..last.min(self.active + 2)).map(load).collect();
-        let mut sums = [0.0; 2];
-        for near in loads.windows(3) {
-            (0..2).for_each(|side| sums[side] += (near[0][side] - 2.0 * near[1][side] + near[2][side]).abs());
+        let end = (self.len() - usize::from(self.upright)).min(self.active + 2);
+        let (unit, mut q) = (law.normal_unit(), Vec::new());
+        law.prony().loads((&self.memory[1], self.len()), (&self.carried, 0..end), &mut q);
+        let springs = self.weights.iter().zip(&self.rooms).zip(&q);
+        let mut loads =
+            springs.map(|((weight, room), q)| [weight * unit * room, if *room > 0.0 { weight * q } else { 0.0 }]);
+        let (mut sums, mut near) = ([0.0; 2], [(); 2].map(|()| loads.next().unwrap_or_default()));
+        for next in loads {
+            (0..2).for_each(|side| sums[side] += (near[0][side] - 2.0 * near[1][side] + next[side]).abs());
+            near = [near[1], next];
         }
         sums.map(|sum| sum / 16.0)
     }
 
-    /// The contact radius, m.
+    /// The contact radius, m: where the pressure of the last springs inside, or the gap of the first ones outside, is
+    /// zero if extrapolated linearly over the level. On the side that a moving edge leaves behind, springs have changed
+    /// their state for a short time alone, and the extrapolation ends beyond the edge: pressure grows the less, and the
+    /// gap the more, the farther a spring is from it. So the nearer one of the two is right.
     pub(crate) fn radius(&self, law: &SpringLaw<'_>) -> f64 {
         let (prony, indenter) = (law.prony(), law.indenter());
-        let gap = |index: usize| {
-            let kept = self.kept(prony, index);
-            (self.indentation - self.levels[index] - kept, kept)
-        };
         let last = self.rooms[..self.active].iter().rposition(|room| *room > 0.0);
         let Some(last) = last.filter(|_| !prony.terms().is_empty()) else {
             // A tip that touches less than one spring does.
@@ -236,16 +243,15 @@ impl Row {
         if last + 1 == self.levels.len() {
             return self.levels.len() as f64 * self.width;
         }
-        let ((inner, kept), (outer, beyond)) = (gap(last), gap(last + 1));
-        let share = if outer.is_finite() { inner / (inner - outer) } else { 0.5 };
-        let left = kept + share * (beyond - kept);
-        let place = |share: f64| (last as f64 + 0.5 + share) * self.width;
-        if beyond.abs() > 0.0 {
-            return place(share);
-        }
-        let left = if last > 0 && kept.abs() > 0.0 { left } else { 0.0 };
-        let exact = indenter.radius((self.indentation - left).max(0.0));
-        if (place(0.0)..=place(1.0)).contains(&exact) { exact } else { place(share) }
+        let pressure = |index: usize| self.indentation - self.levels[index] - self.kept(prony, 0, index);
+        let zero = |[near, far]: [usize; 2]| {
+            let (p, level) = (pressure(near), self.levels[near]);
+            level + p * (self.levels[far] - level) / (p - pressure(far))
+        };
+        let inside = (last > 0).then(|| zero([last, last - 1]));
+        let outside = (last + 2 < self.len()).then(|| zero([last + 1, last + 2]));
+        let between = inside.into_iter().chain(outside).filter(|level| *level > self.levels[last]);
+        indenter.radius(between.fold(self.levels[last + 1], f64::min)).min(self.place_of(last + 1))
     }
 
     /// The energy of the deflection along the surface, J.

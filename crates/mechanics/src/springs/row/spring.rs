@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use crate::numerics::roots::between;
 use crate::springs::law::SpringLaw;
-use crate::viscoelastic::prony::{Kernel, MOST_TERMS, Prony};
+use crate::viscoelastic::kernel::Kernel;
+use crate::viscoelastic::prony::{MOST_TERMS, Prony};
 
 /// A part of a bound up to which a spring that slipped before is taken to slip on.
 const AT_BOUND: f64 = 1e-11;
@@ -18,6 +19,8 @@ pub(super) struct Step<'a> {
     pub(super) kernel: Kernel,
     pub(super) time: f64,
     pub(super) indentation: [f64; 2],
+    /// How far d and U are beyond a straight line in the middle of the step, m; they are parabolas.
+    pub(super) bow: [f64; 2],
     pub(super) scale: f64,
 }
 
@@ -29,17 +32,6 @@ pub(super) struct Spring {
     pub(super) z: [f64; MOST_TERMS],
     /// Room and q at the beginning.
     pub(super) load: [f64; 2],
-}
-
-/// What a spring does in a whole step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Does {
-    Stick,
-    /// It was at its bound before.
-    Slip {
-        forwards: bool,
-    },
-    Other,
 }
 
 /// What a spring has done in a step: its slip, against what mean, the work of q, and q.
@@ -62,13 +54,26 @@ impl Step<'_> {
 
     pub(super) fn relax(&self, part: f64, v: &mut [f64]) {
         if part > 0.0 && v.iter().any(|v| v.abs() > 0.0) {
-            self.prony.relax(&self.kernel_over(part), v);
+            self.prony.relax(part * self.time, v);
         }
     }
 
     fn at(&self, level: f64, part: f64) -> f64 {
         let [from, to] = self.indentation;
-        (if part < 1.0 { from + part * (to - from) } else { to }) - level
+        (if part < 1.0 { from + part * (to - from + 4.0 * self.bow[0] * (1.0 - part)) } else { to }) - level
+    }
+
+    /// How far U moves over a part of the step, if it moves by `straight` without its bow.
+    pub(super) fn way_over(&self, [begin, end]: [f64; 2], straight: f64) -> f64 {
+        straight + 4.0 * self.bow[1] * (end * (1.0 - end) - begin * (1.0 - begin))
+    }
+
+    /// The part of the step in which a spring touches that does not throughout.
+    pub(super) fn span(&self, spans: &[(usize, f64)], level: f64, index: usize) -> f64 {
+        if let SpringLaw::Twist(_) = self.law {
+            return touching([self.at(level, 0.0), self.at(level, 1.0)]);
+        }
+        spans.binary_search_by_key(&index, |(spring, _)| *spring).map_or(0.0, |place| spans[place].1)
     }
 
     /// How a spring presses that had the room `before`, and does not press throughout: the part of the step in which it
@@ -101,8 +106,10 @@ impl Step<'_> {
             return [0.0; 2];
         }
         let first = ends[0] - self.prony.kept(v);
-        let part = if virgin || first >= 0.0 {
-            if first < 0.0 { first / (first - gap) } else { 0.0 }
+        let part = if first >= 0.0 {
+            0.0
+        } else if virgin && self.bow[0].abs() <= 0.0 {
+            first / (first - gap)
         } else {
             between([(0.0, first), (1.0, gap)], INSTANT, |part| self.at(level, part) - left(part))
         };
@@ -112,18 +119,13 @@ impl Step<'_> {
         [1.0 - part, p]
     }
 
-    /// What a spring does, from its room and q before to those that it would have at the end.
-    pub(super) fn does(&self, [before, q]: [f64; 2], [room, trial]: [f64; 2], way: f64) -> Does {
-        if before <= 0.0 || room <= 0.0 {
-            return Does::Other;
-        }
-        let bound = self.scale * room;
-        if trial.abs() <= bound {
-            return Does::Stick;
-        }
-        let excess = q * trial.signum() - self.scale * before;
-        let slips = excess >= -AT_BOUND * (bound + way.abs()) && bound > 0.0 && !self.prony.terms().is_empty();
-        if slips { Does::Slip { forwards: trial > 0.0 } } else { Does::Other }
+    /// Whether a spring slips forwards or backwards throughout, which does not stick throughout, from its room and q
+    /// before to those that it would have at the end.
+    pub(super) fn slides(&self, [before, q]: [f64; 2], [room, trial]: [f64; 2], way: f64) -> Option<bool> {
+        let (bound, forwards) = (self.scale * room, trial > 0.0);
+        let excess = if forwards { q } else { -q } - self.scale * before;
+        let at_bound = excess >= -AT_BOUND * (bound + way.abs());
+        (before > 0.0 && bound > 0.0 && at_bound && !self.prony.terms().is_empty()).then_some(forwards)
     }
 
     /// Moves a spring that touches in a part of the step and has a room at the end of it.
@@ -138,7 +140,7 @@ impl Step<'_> {
             }
             self.relax(parts[0], &mut spring.z[..terms]);
         }
-        let done = self.slide(spring, parts, way * span, room);
+        let done = self.slide(spring, parts, self.way_over(parts, way * span), room);
         if before > 0.0 && room <= 0.0 {
             self.relax(1.0 - span, &mut spring.v[..terms]);
             spring.u = self.prony.kept(&spring.v[..terms]);
@@ -185,7 +187,7 @@ impl Step<'_> {
         let kernel = &*self.kernel_over(end - from);
         let factor = sign * scale;
         v.iter_mut().zip(&*z).for_each(|(v, z)| *v -= factor * z);
-        prony.relax(kernel, v);
+        prony.relax((end - from) * self.time, v);
         prony.press(kernel, z, [at(from), at(end)]);
         v.iter_mut().zip(&*z).for_each(|(v, z)| *v += factor * z);
         let kept = prony.kept(v);
@@ -214,6 +216,16 @@ impl Spring {
         let mean = if rate > 0.0 { bound - 0.5 * change * (slip / rate).min(1.0) } else { bound };
         let sign = trial.signum();
         Done { slip: sign * slip, mean: sign * mean, work: stored + slip * mean, q: self.u }
+    }
+}
+
+/// The part of a straight step in which a gap that begins and ends so is closed.
+fn touching([before, after]: [f64; 2]) -> f64 {
+    match (before > 0.0, after > 0.0) {
+        (true, true) => 1.0,
+        (false, true) => after / (after - before),
+        (true, false) => before / (before - after),
+        (false, false) => 0.0,
     }
 }
 

@@ -1,6 +1,6 @@
 //! A step of a row of springs: what all of them do under the load, the way that a force or torque asks for, and slip.
 
-use super::spring::{Does, Done, Spring, Step, gather, scatter};
+use super::spring::{Spring, Step, gather, scatter};
 use super::{Led, Row};
 use crate::numerics::roots::within;
 use crate::range;
@@ -25,16 +25,14 @@ pub(crate) struct Slides(pub(crate) f64);
 /// What a step finds on its way, kept for the next one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
-    /// q before the step, its mean, and after it, if all stick.
-    loads: Vec<f64>,
-    mean: Vec<f64>,
+    /// q if all stick, and the mean of it over the step where they do, or q before where they do not.
     trial: Vec<f64>,
-    /// What follows those of the row.
-    rooms: Vec<f64>,
-    memory: [Vec<f64>; 2],
+    loads: Vec<f64>,
     /// The part of the step in which a spring touches that does not throughout.
-    spans: Vec<f64>,
+    spans: Vec<(usize, f64)>,
     slips: Vec<f64>,
+    /// Springs that are not in contact yet.
+    outside: Vec<usize>,
     /// How free springs relax, row by row.
     matrix: Vec<f64>,
     /// Stiffness, q without a move, its slope over the move, and bound, of springs in the contact.
@@ -42,178 +40,207 @@ pub(crate) struct Scratch {
 }
 
 impl Row {
-    /// Makes one step of a time, s, straight in d and U.
+    /// Makes one step of a time, s, along parabolas of d and U, which in the middle are by `bow`, m, beyond a straight
+    /// line: the springs after it.
     pub(crate) fn step(
-        &mut self,
+        &self,
         law: &SpringLaw<'_>,
         time: f64,
-        [normal, along]: [Led; 2],
+        ([normal, along], bow): ([Led; 2], [f64; 2]),
+        after: &mut Row,
         scratch: &mut Scratch,
     ) -> Result<Slipped, Slides> {
         let (before, prony) = (self.indentation, law.prony());
-        let (kernel, scale) = (prony.kernel(time), law.scale());
-        let mut step = Step { law, prony, kernel, time, indentation: [before; 2], scale };
-        let mut indentation = 0.0;
-        if let (Led::Sum(sum), SpringLaw::Coulomb(law)) = (normal, law) {
+        let kernel = prony.kernel(time);
+        let mut step = Step { law, prony, kernel, time, indentation: [before; 2], bow, scale: law.scale() };
+        let indentation = match (normal, law) {
+            (Led::Place(indentation), _) => indentation,
             // The first springs are placed in the contact of instantaneous moduli.
-            let radius = law.indenter.radius(law.indenter.indentation_for(sum / law.stiffness[0]));
-            self.reach(&SpringLaw::Coulomb(*law), if self.width > 0.0 { 0.0 } else { radius });
-        }
-        // Springs that are yet to be placed share the load.
-        let mut width = f64::NAN;
-        while width.to_bits() != self.width.to_bits() {
-            width = self.width;
-            indentation = match normal {
-                Led::Place(indentation) => indentation,
-                Led::Sum(sum) => self.indentation_for(&mut step, sum, scratch),
-            };
-            self.reach(law, law.indenter().radius(indentation.max(0.0)));
+            (Led::Sum(sum), SpringLaw::Coulomb(law)) if self.width <= 0.0 && sum > 0.0 => {
+                law.indenter.indentation_for(sum / law.stiffness[0])
+            }
+            (Led::Sum(sum), _) => self.indentation_for(&mut step, sum, after, scratch),
+        };
+        let radius = law.indenter().radius(indentation.max(0.0));
+        if self.is_narrower_than(radius) {
+            // Springs that are yet to be placed share the load.
+            let mut wider = self.clone();
+            wider.reach(law, radius);
+            return wider.step(law, time, ([normal, along], bow), after, scratch);
         }
         step.indentation = [before, indentation];
-        self.press(&step, scratch);
+        after.take_shape(self);
+        self.press(&step, after, scratch);
         let way = match along {
             Led::Place(to) => to - self.position,
-            Led::Sum(sum) => self.way_for(&step, sum, scratch)?,
+            Led::Sum(sum) => self.way_for(&step, sum, after, scratch)?,
         };
-        let slipped = self.shear(&step, way, scratch);
-        self.indentation = indentation;
-        self.position = if let Led::Place(to) = along { to } else { self.position + way };
+        let slipped = self.shear(&step, way, after, scratch);
+        after.indentation = indentation;
+        after.position = if let Led::Place(to) = along { to } else { self.position + way };
         Ok(slipped)
     }
 
     /// What all springs do under the normal load of a step.
-    fn press(&mut self, step: &Step<'_>, scratch: &mut Scratch) {
+    fn press(&self, step: &Step<'_>, after: &mut Row, scratch: &mut Scratch) {
         let [from, to] = step.indentation;
-        scratch.fit(self);
-        while self.active < self.len() && self.levels[self.active] < to.max(from) {
-            self.active += 1;
+        let deepest = to.max(from);
+        after.active = self.active;
+        while after.active < self.len() && self.levels[after.active] < deepest {
+            after.active += 1;
         }
-        let (stride, active) = (self.len(), self.active);
+        scratch.spans.clear();
         if let SpringLaw::Twist(law) = step.law {
-            scratch.rooms = if to.to_bits() == from.to_bits() {
-                self.rooms.clone()
-            } else {
-                law.bounds_at(&self.levels, self.width, &self.rooms, [from, to])
-            };
-            let springs = scratch.spans.iter_mut().zip(&*self.levels);
-            springs.for_each(|(span, level)| *span = touching([from - level, to - level]));
+            after.rooms.clone_from(&self.rooms);
+            if to.to_bits() != from.to_bits() {
+                law.change_bounds(&self.levels, self.width, &mut after.rooms, [from, to]);
+            }
             return;
         }
-        self.press_throughout(step, scratch);
-        let Scratch { rooms, memory, spans, .. } = scratch;
-        let mut sum = 0.0;
-        for index in 0..active {
-            let (before, room) = (self.rooms[index], &mut rooms[index]);
+        self.press_throughout(step, after);
+        for index in 0..after.active {
+            let (before, room) = (self.rooms[index], &mut after.rooms[index]);
             if before <= 0.0 || *room < 0.0 {
-                let mut v = gather(&self.memory[0], stride, index);
+                let mut v = gather(&self.memory[0], self.len(), index);
                 let v_of_terms = &mut v[..step.prony.terms().len()];
-                [spans[index], *room] = step.press(self.levels[index], v_of_terms, before);
-                scatter(&mut memory[0], stride, index, &v);
+                let [span, left] = step.press(self.levels[index], v_of_terms, before);
+                *room = left;
+                scratch.spans.push((index, span));
+                scatter(&mut after.memory[0], self.len(), index, &v);
             }
-            sum += self.weights[index] * *room;
         }
-        self.sums[0] = sum * step.law.normal_unit();
+        after.sums[0] = step.law.weight(self.width, 0) * step.law.normal_unit() * total(&after.rooms);
     }
 
     /// The memory of the normal springs, and their rooms, if all of them press throughout.
-    fn press_throughout(&self, step: &Step<'_>, Scratch { memory, rooms, .. }: &mut Scratch) {
+    fn press_throughout(&self, step: &Step<'_>, after: &mut Row) {
         let [from, to] = step.indentation;
-        let w = (from, -1.0, &self.levels[..self.active]);
-        step.prony.follow(&step.kernel, &self.memory[0], w, to - from, &mut memory[0], rooms);
+        let w = (from, -1.0, &self.levels[..after.active]);
+        let [memory, _] = &mut after.memory;
+        let way = [to - from, step.bow[0]];
+        step.prony.follow(&step.kernel, (&self.memory[0], self.len()), w, way, [memory, &mut after.rooms]);
+        after.rooms.resize(self.len(), 0.0);
     }
 
     /// The memory of the others, and q, if all of them stick throughout.
-    fn stick_throughout(&self, step: &Step<'_>, way: f64, Scratch { memory, trial, .. }: &mut Scratch) {
-        let u = (0.0, 1.0, &self.carried[..self.active]);
-        step.prony.follow(&step.kernel, &self.memory[1], u, way, &mut memory[1], trial);
+    fn stick_throughout(&self, step: &Step<'_>, way: f64, after: &mut Row, trial: &mut Vec<f64>) {
+        let u = (0.0, 1.0, &self.carried[..after.active]);
+        let [_, memory] = &mut after.memory;
+        step.prony.follow(&step.kernel, (&self.memory[1], self.len()), u, [way, step.bow[1]], [memory, trial]);
     }
 
     /// Moves all springs tangentially.
-    fn shear(&mut self, step: &Step<'_>, way: f64, scratch: &mut Scratch) -> Slipped {
-        let (stride, active, prony) = (self.len(), self.active, step.prony);
-        self.stick_throughout(step, way, scratch);
-        prony.free_matrix(&step.kernel, &mut scratch.matrix);
-        let Scratch { trial, mean, loads, rooms, spans, slips, memory, matrix, .. } = &mut *scratch;
-        prony.loads(&step.kernel, &self.memory[1], &self.carried[..active], way, [loads, mean]);
-        let [normal_after, after] = memory;
+    fn shear(&self, step: &Step<'_>, way: f64, after: &mut Row, scratch: &mut Scratch) -> Slipped {
+        let (stride, active, prony, scale) = (self.len(), after.active, step.prony, step.scale);
+        self.stick_throughout(step, way, after, &mut scratch.trial);
+        prony.free_matrix(step.time, &mut scratch.matrix);
+        let Scratch { trial, loads, spans, slips, matrix, .. } = &mut *scratch;
+        let Row { rooms, carried, memory: [normal, memory], .. } = after;
         let ([mut friction, mut work], mut sum) = (self.works, 0.0);
-        let mut end = 0;
-        while end < active {
-            let begin = end;
-            let does = |index: usize| step.does([self.rooms[index], loads[index]], [rooms[index], trial[index]], way);
-            let what = does(begin);
-            end += 1;
-            while end < active && what != Does::Other && does(end) == what {
-                end += 1;
+        for list in [&mut *carried, slips] {
+            list.clear();
+            list.reserve(stride);
+        }
+        let mut stop = 0;
+        while stop < active {
+            // Springs that stick throughout, and then some that do not.
+            let begin = stop;
+            let springs = self.rooms[begin..active].iter().zip(&rooms[begin..active]).zip(&trial[begin..]);
+            let mut stick =
+                springs.map(|((before, room), trial)| *before > 0.0 && *room > 0.0 && trial.abs() <= scale * room);
+            let end = stick.position(|sticks| !sticks).map_or(active, |count| begin + count);
+            stop = stick.position(|sticks| sticks).map_or(active, |count| end + 1 + count);
+            carried.extend(self.carried[begin..end].iter().map(|u| u + way));
+            slips.resize(end, 0.0);
+            let weights = &self.weights[begin..end];
+            if way.abs() > 0.0 {
+                prony.means(&step.kernel, (&self.memory[1], stride), (&self.carried, begin..end), way, loads);
+                weights.iter().zip(&*loads).for_each(|(weight, mean)| work += weight * (way * mean));
             }
-            let factor = match what {
-                Does::Slip { forwards } => step.scale.copysign(if forwards { 1.0 } else { -1.0 }),
-                _ => 0.0,
-            };
-            if factor.abs() > 0.0 {
-                let sides = [&self.memory[1][..], &self.memory[0], normal_after];
-                prony.slide(matrix, (factor, begin..end), sides, after, trial);
-            }
-            for index in begin..end {
-                let (before, room, weight) = (self.rooms[index], rooms[index], self.weights[index]);
-                let done = match what {
-                    Does::Stick => {
-                        self.carried[index] += way;
-                        Done { slip: 0.0, mean: 0.0, work: way * mean[index], q: trial[index] }
-                    }
-                    Does::Slip { .. } => {
-                        let to = factor * room + trial[index];
-                        let (slip, mean) = (self.carried[index] + way - to, 0.5 * factor * (before + room));
-                        self.carried[index] = to;
-                        Done { slip, mean, work: mean * way, q: factor * room }
-                    }
-                    Does::Other => {
-                        let (v, z) = (gather(&self.memory[1], stride, index), gather(&self.memory[0], stride, index));
-                        let (level, u) = (self.levels[index], self.carried[index]);
-                        let mut spring = Spring { level, u, v, z, load: [before, loads[index]] };
-                        let span = if before > 0.0 && room > 0.0 { 1.0 } else { spans[index] };
-                        let done = step.shear(&mut spring, span, way, room);
-                        self.carried[index] = spring.u;
-                        scatter(after, stride, index, &spring.v);
-                        done
-                    }
+            weights.iter().zip(&trial[begin..end]).for_each(|(weight, trial)| sum += weight * trial);
+
+            prony.loads((&self.memory[1], stride), (&self.carried, end..stop), loads);
+            let mut next = end;
+            while next < stop {
+                let begin = next;
+                let slides = |index: usize| {
+                    step.slides([self.rooms[index], loads[index - end]], [rooms[index], trial[index]], way)
                 };
-                slips[index] = done.slip;
-                friction += (weight * done.slip * done.mean).max(0.0);
-                work += weight * done.work;
-                sum += if room > 0.0 { weight * done.q } else { 0.0 };
+                let slips_forwards = slides(begin);
+                next = (begin + 1..stop).find(|index| slides(*index) != slips_forwards).unwrap_or(stop);
+                if let Some(forwards) = slips_forwards {
+                    let (factor, run) = (scale.copysign(if forwards { 1.0 } else { -1.0 }), begin..next);
+                    let sides = ([&self.memory[1][..], &self.memory[0], normal], stride);
+                    prony.slide(matrix, (factor, run.clone()), sides, memory, trial);
+                    let run_rooms = &rooms[run.clone()];
+                    carried.extend(run_rooms.iter().zip(&trial[run.clone()]).map(|(room, kept)| factor * room + kept));
+                    let moved = self.carried[run.clone()].iter().zip(&carried[run.clone()]);
+                    slips.extend(moved.map(|(from, to)| from + way - to));
+                    let springs = self.weights[run.clone()].iter().zip(&self.rooms[run.clone()]).zip(run_rooms);
+                    for (((weight, before), room), slip) in springs.zip(&slips[run]) {
+                        let mean = 0.5 * factor * (before + room);
+                        friction += (weight * slip * mean).max(0.0);
+                        work += weight * (mean * way);
+                        sum += weight * (factor * room);
+                    }
+                    continue;
+                }
+                for index in begin..next {
+                    let (before, room, weight) = (self.rooms[index], rooms[index], self.weights[index]);
+                    let (v, z) = (gather(&self.memory[1], stride, index), gather(&self.memory[0], stride, index));
+                    let (level, u) = (self.levels[index], self.carried[index]);
+                    let mut spring = Spring { level, u, v, z, load: [before, loads[index - end]] };
+                    let span = if before > 0.0 && room > 0.0 { 1.0 } else { step.span(spans, level, index) };
+                    let done = step.shear(&mut spring, span, way, room);
+                    carried.push(spring.u);
+                    slips.push(done.slip);
+                    scatter(memory, stride, index, &spring.v);
+                    friction += (weight * done.slip * done.mean).max(0.0);
+                    work += weight * done.work;
+                    sum += if room > 0.0 { weight * done.q } else { 0.0 };
+                }
             }
         }
-        self.works = [friction, work];
-        self.sums[1] = sum;
-        let slipped = self.slipped(scratch, step.scale, way);
-        std::mem::swap(&mut self.rooms, &mut scratch.rooms);
-        self.memory.iter_mut().zip(&mut scratch.memory).for_each(|(mine, other)| std::mem::swap(mine, other));
-        slipped
+        carried.resize(stride, 0.0);
+        // Along a parabola the work of a force that changes evenly is this much more.
+        work += 2.0 / 3.0 * step.bow[1] * (self.sums[1] - sum);
+        after.works = [friction, work];
+        after.sums[1] = sum;
+        self.slipped(after, scratch, way.abs(), scale)
     }
 
     /// The indentation, m, at which the normal force is `wanted`, N.
-    fn indentation_for(&mut self, step: &mut Step<'_>, wanted: f64, scratch: &mut Scratch) -> f64 {
+    fn indentation_for(&self, step: &mut Step<'_>, wanted: f64, after: &mut Row, scratch: &mut Scratch) -> f64 {
         let (stride, terms, before) = (self.len(), step.prony.terms().len(), self.indentation);
         let weight = step.law.weight(self.width, 0) * step.law.normal_unit();
-        let wanted = if weight > 0.0 { wanted / weight } else { f64::INFINITY };
+        if weight <= 0.0 {
+            return before;
+        }
+        let wanted = wanted / weight;
         // What the springs in contact carry without a move; the others are asked anew.
-        step.indentation = [before; 2];
-        scratch.fit(self);
-        self.press_throughout(step, scratch);
-        let (inside, outside): (Vec<usize>, Vec<usize>) = (0..stride).partition(|index| self.rooms[*index] > 0.0);
-        let inside: Vec<f64> = inside.into_iter().map(|index| scratch.rooms[index]).collect();
+        after.active = self.active;
+        self.press_throughout(step, after);
+        let (outside, mut least) = (&mut scratch.outside, f64::INFINITY);
+        outside.clear();
+        for (index, (before, room)) in self.rooms.iter().zip(&mut after.rooms).take(self.active).enumerate() {
+            if *before > 0.0 {
+                least = least.min(*room);
+            } else {
+                *room = 0.0;
+                outside.push(index);
+            }
+        }
+        let (inside, rest, unit) = ((self.active - outside.len()) as f64, total(&after.rooms), step.kernel.slope);
         let mut sum = |indentation: f64| {
             step.indentation = [before, indentation];
-            let (mut sum, mut slope) = (0.0, 0.0);
-            for rest in &inside {
-                let p = rest + step.kernel.slope * (indentation - before);
-                if p > 0.0 {
-                    sum += p;
-                    slope += step.kernel.slope;
-                }
+            let change = unit * (indentation - before);
+            let (mut sum, mut slope) = (rest + inside * change, inside * unit);
+            if least + change < 0.0 {
+                let loads = after.rooms.iter().zip(&self.rooms).filter(|(_, before)| **before > 0.0);
+                let pressed = loads.map(|(rest, _)| rest + change).filter(|p| *p > 0.0);
+                (sum, slope) = pressed.fold((0.0, 0.0), |(sum, slope), p| (sum + p, slope + unit));
             }
-            for &index in &outside {
+            for index in outside.iter().copied().chain(self.active..stride) {
                 let level = self.levels[index];
                 if index >= self.active && level >= indentation {
                     break;
@@ -259,14 +286,19 @@ impl Row {
     }
 
     /// The change of U at which the force, N, or torque, N m, is `wanted`.
-    fn way_for(&self, step: &Step<'_>, wanted: f64, scratch: &mut Scratch) -> Result<f64, Slides> {
+    fn way_for(
+        &self,
+        step: &Step<'_>,
+        wanted: f64,
+        after: &mut Row,
+        Scratch { held, spans, trial, .. }: &mut Scratch,
+    ) -> Result<f64, Slides> {
         let (stride, terms) = (self.len(), step.prony.terms().len());
-        self.stick_throughout(step, 0.0, scratch);
-        let Scratch { held, rooms, spans, trial, .. } = scratch;
+        self.stick_throughout(step, 0.0, after, trial);
         held.clear();
-        for index in 0..self.active {
-            let (bound, inside) = (step.scale * rooms[index], self.rooms[index] > 0.0);
-            let span = if inside { 1.0 } else { spans[index] };
+        for index in 0..after.active {
+            let (bound, inside) = (step.scale * after.rooms[index], self.rooms[index] > 0.0);
+            let span = if inside { 1.0 } else { step.span(spans, self.levels[index], index) };
             if bound <= 0.0 || span <= 0.0 {
                 continue;
             }
@@ -278,7 +310,8 @@ impl Row {
                 step.relax(1.0 - span, &mut v[..terms]);
                 let kernel = step.kernel(span);
                 let u = self.carried[index] - kept + step.prony.kept(&v[..terms]);
-                [step.prony.pressed(&kernel, &v[..terms], [u, u]), kernel.slope * span]
+                let ends = [u, u + step.way_over([1.0 - span, 1.0], 0.0)];
+                [step.prony.pressed(&kernel, &v[..terms], ends), kernel.slope * span]
             };
             held.push([self.weights[index], rest, slope, bound]);
         }
@@ -305,25 +338,21 @@ impl Row {
     }
 
     /// Where the step slipped, and whether contact is a disc and slip an outer annulus of one sign.
-    fn slipped(&self, scratch: &Scratch, scale: f64, way: f64) -> Slipped {
-        let slips = &scratch.slips[..self.active];
-        let (mut deepest, mut inside, mut last) = (0.0_f64, 0, 0);
-        for (index, &room) in scratch.rooms[..self.active].iter().enumerate() {
-            if room > 0.0 {
-                (deepest, inside, last) = (deepest.max(room), inside + 1, index + 1);
-            }
-        }
-        let deepest = way.abs().max(scale * deepest);
+    fn slipped(&self, after: &Row, Scratch { slips, .. }: &Scratch, way: f64, scale: f64) -> Slipped {
+        let rooms = &after.rooms[..after.active];
+        let inside = rooms.iter().filter(|room| **room > 0.0).count();
+        let last = rooms.iter().rposition(|room| *room > 0.0).map_or(0, |last| last + 1);
+        let deepest = way.max(scale * largest(rooms));
         // A few springs of a row of hundreds are its discretisation.
         let few = 1 + self.count / 256;
         let least = NO_SLIP * deepest;
         let Some(first) = slips.iter().position(|slip| slip.abs() > least) else {
             return Slipped { from: None, beyond: last - inside > few };
         };
-        let most = slips.iter().fold(0.0, |most: f64, slip| most.max(slip.abs()));
+        let most = slips[first..].iter().fold(0.0, |most: f64, slip| most.max(slip.abs()));
         let (sign, much) = (slips[first], (1e-3 * most).max(least));
         let (mut other, mut stuck) = (0, 0);
-        for (slip, room) in slips.iter().zip(&scratch.rooms).skip(first) {
+        for (slip, room) in slips.iter().zip(rooms).skip(first) {
             other += usize::from(slip.abs() > much && slip * sign < 0.0);
             stuck += usize::from(slip.abs() <= least && scale * room > 1e-3 * deepest);
         }
@@ -332,28 +361,19 @@ impl Row {
     }
 }
 
-impl Scratch {
-    /// Gives it the size of a row, with nothing where the row has none.
-    fn fit(&mut self, row: &Row) {
-        let (count, active) = (row.len(), row.active);
-        let Scratch { loads, mean, trial, rooms, memory, spans, slips, .. } = self;
-        for list in [loads, mean, trial, rooms, spans, slips] {
-            list.resize(count, 0.0);
-        }
-        for (list, of) in memory.iter_mut().zip(&row.memory) {
-            list.resize(of.len(), 0.0);
-            list.chunks_exact_mut(count.max(1)).for_each(|term| term[active..].fill(0.0));
-        }
-        self.rooms[active..].fill(0.0);
-    }
+/// The sum of a list, in four lanes.
+fn total(list: &[f64]) -> f64 {
+    let (fours, rest) = list.as_chunks::<4>();
+    let mut lanes = [0.0; 4];
+    fours.iter().for_each(|four| lanes.iter_mut().zip(four).for_each(|(lane, value)| *lane += value));
+    lanes.iter().chain(rest).sum()
 }
 
-/// The part of a straight step in which a gap that begins and ends so is closed.
-fn touching([before, after]: [f64; 2]) -> f64 {
-    match (before > 0.0, after > 0.0) {
-        (true, true) => 1.0,
-        (false, true) => after / (after - before),
-        (true, false) => before / (before - after),
-        (false, false) => 0.0,
-    }
+/// The largest number of a list, at least zero.
+fn largest(list: &[f64]) -> f64 {
+    let (fours, rest) = list.as_chunks::<4>();
+    let mut lanes = [0.0; 4];
+    let larger = |one: f64, other: f64| if other > one { other } else { one };
+    fours.iter().for_each(|four| lanes.iter_mut().zip(four).for_each(|(lane, value)| *lane = larger(*lane, *value)));
+    lanes.iter().chain(rest).copied().fold(0.0, larger)
 }
