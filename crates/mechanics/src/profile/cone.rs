@@ -4,9 +4,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Kinks, Powers, Shape};
-use crate::cells::stages::Stages;
+use super::families::{endless, family};
+use super::{Family, Parameter, Profile, range};
+use crate::cells::shape::{Kink, Kinks, Powers, Shape};
 
 /// Its declaration.
 pub(super) static FAMILY: Family = Family {
@@ -18,21 +18,10 @@ pub(super) static FAMILY: Family = Family {
     make: |p| Cone::new(p[0]).map(Profile::Cone),
 };
 
-/// A cone.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Cone {
-    slope: f64,
-    stages: Stages,
-}
-
-impl Cone {
+family! {
+    /// A cone.
+    Cone { slope }
     /// The cone of slope T = dz/dr.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(slope: f64) -> Result<Cone, Error> {
-        FAMILY.check([slope]).map(|[slope]| Cone { slope, stages: Stages::new() })
-    }
 }
 
 impl Shape for Cone {
@@ -53,11 +42,5 @@ impl Shape for Cone {
         self.slope
     }
 
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        None
-    }
+    endless!();
 }

@@ -3,7 +3,8 @@
 //! Contacts end at nine tenths of the radius: beyond, elasticity of small strains says little, and a radius beside the
 //! equator, where the sphere is vertical, has few digits for its level.
 
-use super::{Error, Family, Parameter, Profile, range};
+use super::families::family;
+use super::{Family, Parameter, Profile, range};
 use crate::cells::shape::{End, EndKind, Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
 
@@ -26,21 +27,10 @@ pub(super) static FAMILY: Family = Family {
     make: |p| ExactSphere::new(p[0]).map(Profile::ExactSphere),
 };
 
-/// A sphere, not its osculating paraboloid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ExactSphere {
-    radius: f64,
-    stages: Stages,
-}
-
-impl ExactSphere {
+family! {
+    /// A sphere, not its osculating paraboloid.
+    ExactSphere { radius }
     /// The sphere of radius R, m.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(radius: f64) -> Result<ExactSphere, Error> {
-        FAMILY.check([radius]).map(|[radius]| ExactSphere { radius, stages: Stages::new() })
-    }
 }
 
 impl Shape for ExactSphere {

@@ -67,3 +67,41 @@ impl Family {
         Ok(numbers)
     }
 }
+
+/// The struct of a family whose fields are its parameters, with its checked constructor.
+macro_rules! family {
+    ($(#[$about:meta])+ $Shape:ident { $($parameter:ident),+ } $(#[$new:meta])+) => {
+        $(#[$about])+
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct $Shape {
+            $($parameter: f64,)+
+            stages: $crate::cells::stages::Stages,
+        }
+
+        impl $Shape {
+            $(#[$new])+
+            ///
+            /// # Errors
+            /// [`Error::OutOfRange`](crate::Error::OutOfRange) with the name of the parameter.
+            pub fn new($($parameter: f64),+) -> Result<$Shape, $crate::Error> {
+                let [$($parameter),+] = FAMILY.check([$($parameter),+])?;
+                Ok($Shape { $($parameter,)+ stages: $crate::cells::stages::Stages::new() })
+            }
+        }
+    };
+}
+pub(super) use family;
+
+/// The cells of a shape, and that contacts end nowhere on it.
+macro_rules! endless {
+    () => {
+        fn stages(&self) -> &$crate::cells::stages::Stages {
+            &self.stages
+        }
+
+        fn end(&self) -> Option<$crate::cells::shape::End> {
+            None
+        }
+    };
+}
+pub(super) use endless;

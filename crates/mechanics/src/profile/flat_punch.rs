@@ -1,7 +1,8 @@
 //! Flat punch of radius b: X(y) = b for every level, so that all of a ring lies at the vertical edge, where its kernel
 //! is depth/sqrt(b^2 - r^2) (Boussinesq 1885).
 
-use super::{Error, Family, Parameter, Profile, range};
+use super::families::family;
+use super::{Family, Parameter, Profile, range};
 use crate::cells::shape::{End, EndKind, Kinks, Shape};
 use crate::cells::stages::Stages;
 
@@ -15,21 +16,10 @@ pub(super) static FAMILY: Family = Family {
     make: |p| FlatPunch::new(p[0]).map(Profile::FlatPunch),
 };
 
-/// A cylinder pressed in with its flat end.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FlatPunch {
-    radius: f64,
-    stages: Stages,
-}
-
-impl FlatPunch {
+family! {
+    /// A cylinder pressed in with its flat end.
+    FlatPunch { radius }
     /// The punch of radius b, m.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(radius: f64) -> Result<FlatPunch, Error> {
-        FAMILY.check([radius]).map(|[radius]| FlatPunch { radius, stages: Stages::new() })
-    }
 }
 
 impl Shape for FlatPunch {

@@ -4,9 +4,9 @@
 //! There gamma = dg/dt = T (t/x) (2b/(x + t) + phi) (Ciavarella 1999; Popov & Heß 2015). f' bends but does not jump at
 //! b, so all stresses are finite.
 
-use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
-use crate::cells::stages::Stages;
+use super::families::{endless, family};
+use super::{Family, Parameter, Profile, range};
+use crate::cells::shape::{Kink, Kinks, Powers, Shape, above};
 
 /// Its declaration.
 pub(super) static FAMILY: Family = Family {
@@ -27,23 +27,10 @@ pub(super) static FAMILY: Family = Family {
     make: |p| RoundedCone::new(p[0], p[1]).map(Profile::RoundedCone),
 };
 
-/// A cone whose tip is a paraboloid.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoundedCone {
-    slope: f64,
-    tip_radius: f64,
-    stages: Stages,
-}
-
-impl RoundedCone {
+family! {
+    /// A cone whose tip is a paraboloid.
+    RoundedCone { slope, tip_radius }
     /// The cone of slope T, parabolic up to the radius b, m, where both slopes agree.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(slope: f64, tip_radius: f64) -> Result<RoundedCone, Error> {
-        let [slope, tip_radius] = FAMILY.check([slope, tip_radius])?;
-        Ok(RoundedCone { slope, tip_radius, stages: Stages::new() })
-    }
 }
 
 impl Shape for RoundedCone {
@@ -75,11 +62,5 @@ impl Shape for RoundedCone {
         self.slope * (r / self.tip_radius).min(1.0)
     }
 
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        None
-    }
+    endless!();
 }

@@ -4,9 +4,9 @@
 //! gamma = dg/dt = (t/(R x))(2t - b phi) (Schubert 1942; Ciavarella 1999). All stays positive through t - b phi = b (u
 //! - atan u), u = t/b.
 
-use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
-use crate::cells::stages::Stages;
+use super::families::{endless, family};
+use super::{Family, Parameter, Profile, range};
+use crate::cells::shape::{Kink, Kinks, Powers, Shape, above};
 use crate::numerics::angle::angles;
 
 /// Its declaration.
@@ -22,24 +22,13 @@ pub(super) static FAMILY: Family = Family {
     make: |p| RoundedPunch::new(p[0], p[1]).map(Profile::RoundedPunch),
 };
 
-/// A flat punch with a rounded edge.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoundedPunch {
-    flat_radius: f64,
-    edge_radius: f64,
-    stages: Stages,
+family! {
+    /// A flat punch with a rounded edge.
+    RoundedPunch { flat_radius, edge_radius }
+    /// Flat up to the radius b, then a parabola of curvature radius R, both in m.
 }
 
 impl RoundedPunch {
-    /// Flat up to the radius b, then a parabola of curvature radius R, both in m.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(flat_radius: f64, edge_radius: f64) -> Result<RoundedPunch, Error> {
-        let [flat_radius, edge_radius] = FAMILY.check([flat_radius, edge_radius])?;
-        Ok(RoundedPunch { flat_radius, edge_radius, stages: Stages::new() })
-    }
-
     /// t - b phi, m.
     fn beyond_angle(&self, t: f64) -> f64 {
         let (_, [difference]) = angles([t / self.flat_radius]);
@@ -66,13 +55,7 @@ impl Shape for RoundedPunch {
         (r - self.flat_radius).max(0.0) / self.edge_radius
     }
 
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        None
-    }
+    endless!();
 
     fn curvature_radius(&self) -> Option<f64> {
         Some(self.edge_radius)

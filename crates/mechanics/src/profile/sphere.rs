@@ -2,9 +2,10 @@
 //!
 //! Its integrals over rings have closed forms, for speed alone: `cells/parabola.rs`.
 
+use super::families::endless;
 use super::{Error, Family, Parameter, Profile, range};
 use crate::cells::parabola::Parabola;
-use crate::cells::shape::{End, Kink, Kinks, Powers, Shape};
+use crate::cells::shape::{Kink, Kinks, Powers, Shape};
 use crate::cells::stages::Stages;
 
 /// Its declaration.
@@ -69,13 +70,7 @@ impl Shape for Sphere {
         r / self.parabola.curvature_radius
     }
 
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        None
-    }
+    endless!();
 
     fn curvature_radius(&self) -> Option<f64> {
         Some(self.parabola.curvature_radius)

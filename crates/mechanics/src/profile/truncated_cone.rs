@@ -3,9 +3,9 @@
 //! gamma = dg/dt = T (phi t + b)/x (Shtaerman 1949; Popov & Heß 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
-use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
-use crate::cells::stages::Stages;
+use super::families::{endless, family};
+use super::{Family, Parameter, Profile, range};
+use crate::cells::shape::{Kink, Kinks, Powers, Shape, above};
 
 /// Its declaration.
 pub(super) static FAMILY: Family = Family {
@@ -20,23 +20,10 @@ pub(super) static FAMILY: Family = Family {
     make: |p| TruncatedCone::new(p[0], p[1]).map(Profile::TruncatedCone),
 };
 
-/// A truncated cone.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TruncatedCone {
-    slope: f64,
-    flat_radius: f64,
-    stages: Stages,
-}
-
-impl TruncatedCone {
+family! {
+    /// A truncated cone.
+    TruncatedCone { slope, flat_radius }
     /// The cone of the given slope T, flat up to the radius b, m.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(slope: f64, flat_radius: f64) -> Result<TruncatedCone, Error> {
-        let [slope, flat_radius] = FAMILY.check([slope, flat_radius])?;
-        Ok(TruncatedCone { slope, flat_radius, stages: Stages::new() })
-    }
 }
 
 impl Shape for TruncatedCone {
@@ -58,11 +45,5 @@ impl Shape for TruncatedCone {
         if r > self.flat_radius { self.slope } else { 0.0 }
     }
 
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        None
-    }
+    endless!();
 }

@@ -3,9 +3,9 @@
 //! gamma = dg/dt = (b^2 + 2 t^2)/(R x) (Ejike 1981; Popov & Heß 2015). f' jumps at b: pressure and shear are
 //! log-infinite there.
 
-use super::{Error, Family, Parameter, Profile, range};
-use crate::cells::shape::{End, Kink, Kinks, Powers, Shape, above};
-use crate::cells::stages::Stages;
+use super::families::{endless, family};
+use super::{Family, Parameter, Profile, range};
+use crate::cells::shape::{Kink, Kinks, Powers, Shape, above};
 
 /// Its declaration.
 pub(super) static FAMILY: Family = Family {
@@ -20,23 +20,10 @@ pub(super) static FAMILY: Family = Family {
     make: |p| TruncatedSphere::new(p[0], p[1]).map(Profile::TruncatedSphere),
 };
 
-/// A paraboloid with a flat end.
-#[derive(Clone, Debug, PartialEq)]
-pub struct TruncatedSphere {
-    curvature_radius: f64,
-    flat_radius: f64,
-    stages: Stages,
-}
-
-impl TruncatedSphere {
+family! {
+    /// A paraboloid with a flat end.
+    TruncatedSphere { radius, flat_radius }
     /// The paraboloid of curvature radius R, m, worn flat up to the radius b, m.
-    ///
-    /// # Errors
-    /// [`Error::OutOfRange`] with the name of the parameter.
-    pub fn new(radius: f64, flat_radius: f64) -> Result<TruncatedSphere, Error> {
-        let [curvature_radius, flat_radius] = FAMILY.check([radius, flat_radius])?;
-        Ok(TruncatedSphere { curvature_radius, flat_radius, stages: Stages::new() })
-    }
 }
 
 impl Shape for TruncatedSphere {
@@ -46,27 +33,21 @@ impl Shape for TruncatedSphere {
 
     fn level(&self, x: f64) -> f64 {
         let b = self.flat_radius;
-        if x > b { x * ((x - b) * (x + b)).sqrt() / self.curvature_radius } else { 0.0 }
+        if x > b { x * ((x - b) * (x + b)).sqrt() / self.radius } else { 0.0 }
     }
 
     fn gamma(&self, base: f64, t: f64) -> f64 {
         let b = self.flat_radius;
-        above(b, base, t, |t| (b * b + 2.0 * t * t) / (b.hypot(t) * self.curvature_radius))
+        above(b, base, t, |t| (b * b + 2.0 * t * t) / (b.hypot(t) * self.radius))
     }
 
     fn surface_slope(&self, r: f64) -> f64 {
-        if r > self.flat_radius { r / self.curvature_radius } else { 0.0 }
+        if r > self.flat_radius { r / self.radius } else { 0.0 }
     }
 
-    fn stages(&self) -> &Stages {
-        &self.stages
-    }
-
-    fn end(&self) -> Option<End> {
-        None
-    }
+    endless!();
 
     fn curvature_radius(&self) -> Option<f64> {
-        Some(self.curvature_radius)
+        Some(self.radius)
     }
 }
