@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use stickslip_mechanics::cycle::{Drive, OscillatingLoad, Oscillation, SteadyCycle, TimedCycle};
 use stickslip_mechanics::profile::{Asperities, Cone, ExactSphere, PowerLaw, RoundedPunch, Tabulated, TruncatedCone};
 use stickslip_mechanics::protocol::falling_amplitude;
-use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarTarget, follow};
+use stickslip_mechanics::rings::{EllipseArc, Options, PlanarMove, PlanarTarget, follow};
 use stickslip_mechanics::subsurface::Side;
 use stickslip_mechanics::{
     Contact, Elasticity, Friction, Law, Move, Normal, Preload, Profile, Prony, PronyTerm, Setup, Sphere, Springs,
@@ -268,7 +268,7 @@ fn plane(criterion: &mut Criterion) {
     let radius = 0.6 * virgin().summary().gross_slip_displacement;
     let target = |target| PlanarMove { tangential: Some(target), ..PlanarMove::default() };
     let turn = |index: usize| index as f64 / MOVES as f64;
-    let arc = |index: usize| Arc { radii: [radius; 2], phase: 0.0, turns: [turn(index), turn(index + 1)] };
+    let arc = |index: usize| EllipseArc { radii: [radius; 2], phase: 0.0, turns: [turn(index), turn(index + 1)] };
     let begin = target(PlanarTarget::Displacement([radius, 0.0]));
     let turns = (0..MOVES).map(|index| target(PlanarTarget::Arc(arc(index))));
     let moves: Vec<PlanarMove> = std::iter::once(begin).chain(turns).collect();

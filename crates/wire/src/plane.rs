@@ -8,7 +8,7 @@ use utoipa::openapi::{KnownFormat, ObjectBuilder, Ref, RefOr, Schema};
 
 use stickslip_mechanics as mechanics;
 use stickslip_mechanics::Normal;
-use stickslip_mechanics::rings::{self, Arc, PlanarTarget, straight_moves};
+use stickslip_mechanics::rings::{self, EllipseArc, PlanarTarget, straight_moves};
 
 use super::path::{CyclicPath, EqualPeaks, FallingAmplitude, PHASE};
 use super::simulate::SimulateReply;
@@ -449,7 +449,7 @@ impl Ellipse {
             let detail = format_args!("{} turns of {steps} moves: allowed are 1 to {most}", self.turns);
             return faults.refuse(at.member("turns"), detail);
         }
-        let arc = |turns| Arc { radii: self.radii, phase: self.phase.unwrap_or(0.0).to_radians(), turns };
+        let arc = |turns| EllipseArc { radii: self.radii, phase: self.phase.unwrap_or(0.0).to_radians(), turns };
         let to = |target| rings::PlanarMove { tangential: Some(target), ..rings::PlanarMove::default() };
         let line = self.line(steps);
         let turns = |index: usize| index as f64 / steps as f64;
@@ -492,8 +492,8 @@ struct EllipseLine {
 
 impl EllipseLine {
     /// The point at the end of an arc, m.
-    fn point(self, arc: &Arc) -> [f64; 2] {
-        let size = Arc { radii: [1.0; 2], phase: 0.0, ..*arc }.at(1.0)[self.axis];
+    fn point(self, arc: &EllipseArc) -> [f64; 2] {
+        let size = EllipseArc { radii: [1.0; 2], phase: 0.0, ..*arc }.at(1.0)[self.axis];
         self.end.map(|component| component * size)
     }
 }

@@ -1,7 +1,7 @@
 //! The force of a motion in the plane between the ends of moves, for pictures: each move is made in parts.
 
 use stickslip_mechanics::Normal;
-use stickslip_mechanics::rings::{Arc, PlanarMove, PlanarTarget};
+use stickslip_mechanics::rings::{EllipseArc, PlanarMove, PlanarTarget};
 use stickslip_wire::plane::{PlanarReply, SimulationReply};
 
 use super::plane::simulate_any;
@@ -75,7 +75,7 @@ fn in_parts(step: &PlanarMove, begin: Begin, parts: usize) -> impl Iterator<Item
             PlanarTarget::Arc(arc) => {
                 let [first, last] = arc.turns;
                 let at = |part: f64| first + part * (last - first);
-                PlanarTarget::Arc(Arc { turns: [at(part - each), at(part)], ..arc })
+                PlanarTarget::Arc(EllipseArc { turns: [at(part - each), at(part)], ..arc })
             }
         });
         let normal = step.normal.map(|target| match target {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{ClosedCycle, CycleScan, DEPTH, Point, State};
+use super::{ClosedCycle, CycleScan, DEPTH, State, TurningPoint};
 
 /// The closed cycles that have been found on a path so far, the newest of them.
 #[derive(Clone, Debug, Default)]
@@ -57,7 +57,7 @@ impl CycleLog {
     /// Bytes of memory.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        let points = self.scan.points.capacity() * size_of::<Point>();
+        let points = self.scan.points.capacity() * size_of::<TurningPoint>();
         size_of::<CycleLog>() + points + self.newest.capacity() * size_of::<ClosedCycle>()
     }
 
@@ -67,7 +67,7 @@ impl CycleLog {
         let points = &self.scan.points;
         let grown = points.capacity().max(points.len().saturating_add(states).min(DEPTH + 2));
         // A deque doubles, and copies itself to do so.
-        3 * grown * size_of::<Point>() + 2 * self.most * size_of::<ClosedCycle>()
+        3 * grown * size_of::<TurningPoint>() + 2 * self.most * size_of::<ClosedCycle>()
     }
 
     /// Gives back the memory that it does not use.

@@ -97,13 +97,13 @@ struct CycleScan {
     /// Where the path began, m, infinite after gross slip; `None` while the bodies are apart.
     start: Option<f64>,
     /// The turning points that are remembered, and the last state, which may become one.
-    points: VecDeque<Point>,
+    points: VecDeque<TurningPoint>,
     load: ConstantLoad,
 }
 
 /// A turning point, or the last state.
 #[derive(Clone, Copy, Debug)]
-struct Point {
+struct TurningPoint {
     sequence: u64,
     displacement: f64,
     /// Friction work up to here, J.
@@ -159,7 +159,7 @@ impl CycleScan {
             self.points.pop_back();
         }
         let rises = displacement > self.points.back().map_or(start, |before| before.displacement);
-        self.points.push_back(Point::new(sequence, state, self.load.reach(displacement, rises)));
+        self.points.push_back(TurningPoint::new(sequence, state, self.load.reach(displacement, rises)));
         self.close(last, &mut found);
         self.forget(start);
         if let Some(before) = self.points.len().checked_sub(2) {
@@ -251,9 +251,9 @@ impl CycleScan {
     }
 }
 
-impl Point {
-    fn new(sequence: u64, state: &State, reach: f64) -> Point {
-        Point {
+impl TurningPoint {
+    fn new(sequence: u64, state: &State, reach: f64) -> TurningPoint {
+        TurningPoint {
             sequence,
             displacement: state.displacement,
             work: state.dissipated_energy,

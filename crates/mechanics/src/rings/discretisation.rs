@@ -1,8 +1,8 @@
 //! One discretisation of a path: rings of one number, moved step by step.
 
-use std::sync::Arc as Shared;
+use std::sync::Arc;
 
-use super::step::{Increment, PlanarBuffers, Ring, Stepped, Units, dot};
+use super::step::{Increment, PlanarBuffers, RingState, Stepped, Units, dot};
 use super::stiffness::{RingStiffness, Vector};
 
 /// The end of a step, m or N.
@@ -15,9 +15,9 @@ pub(super) enum Target {
 /// Rings with what a path asks of their history.
 #[derive(Clone, Debug)]
 pub(super) struct Discretisation {
-    pub(super) matrix: Shared<RingStiffness>,
+    pub(super) matrix: Arc<RingStiffness>,
     units: Units,
-    pub(super) rings: Vec<Ring>,
+    pub(super) rings: Vec<RingState>,
     /// With the limits of the next step.
     pub(super) buffers: PlanarBuffers,
     pub(super) displacement: Vector,
@@ -39,11 +39,11 @@ pub(super) struct Discretisation {
 
 impl Discretisation {
     /// At rest under the limits of these buffers.
-    pub(super) fn new(matrix: Shared<RingStiffness>, units: Units, buffers: PlanarBuffers) -> Discretisation {
+    pub(super) fn new(matrix: Arc<RingStiffness>, units: Units, buffers: PlanarBuffers) -> Discretisation {
         let still = vec![[0.0; 2]; matrix.count];
         Discretisation {
             units,
-            rings: buffers.limits.iter().map(|&bound| Ring { bound, ..Ring::default() }).collect(),
+            rings: buffers.limits.iter().map(|&bound| RingState { bound, ..RingState::default() }).collect(),
             buffers,
             displacement: [0.0; 2],
             force: [0.0; 2],
@@ -74,7 +74,7 @@ impl Discretisation {
             Target::Force(to) => Increment::Force(by(to, self.force)),
         };
         let (slipped, dissipated) = (&mut self.slipped, &mut self.dissipated);
-        let visit = &mut |index: usize, before: &Ring, ring: &Ring| {
+        let visit = &mut |index: usize, before: &RingState, ring: &RingState| {
             dissipated[index] += 0.5 * (dot(before.traction, ring.slip) + dot(ring.traction, ring.slip));
             slipped[index] = [0, 1].map(|axis| slipped[index][axis] + ring.slip[axis]);
         };

@@ -6,7 +6,7 @@
 use super::discretisation::Discretisation;
 use super::follow::Scene;
 use super::solution::{Solution, extrapolated};
-use super::step::Ring;
+use super::step::RingState;
 use super::stiffness::Vector;
 use crate::contact::Contact;
 
@@ -49,7 +49,7 @@ impl Field {
             (0..count).map(at).collect()
         };
         let ratio_of = |run: &Discretisation, ring: usize| {
-            let Ring { bound, traction, .. } = run.rings[ring];
+            let RingState { bound, traction, .. } = run.rings[ring];
             traction.map(|component| if bound > 0.0 { component / bound } else { 0.0 })
         };
         let mut ratio = blended(&ratio_of);

@@ -1,8 +1,10 @@
 //! A path followed to a tolerance: by several discretisations at once, which are extrapolated and compared.
 
-use std::sync::Arc as Shared;
+use std::sync::Arc;
 
+use super::contact_of;
 use super::discretisation::{Discretisation, Target};
+use super::load::load_between;
 use super::solution::{Blend, Solution};
 use super::step::{PlanarBuffers, Units};
 use super::stiffness::{RingStiffness, Vector};
@@ -10,7 +12,6 @@ use super::straight::straight_moves;
 use super::{PlanarMove, PlanarTarget, TURNED};
 use crate::contact::Contact;
 use crate::contact::state::{Move, Normal, Setup};
-use crate::numerics::double_double::DoubleDouble;
 use crate::profile::Profile;
 use crate::range;
 use crate::range::error::Error;
@@ -63,8 +64,8 @@ pub struct Refusal {
 /// The normal load after a move.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Load {
-    pub(super) indentation: f64,
-    pub(super) normal_force: f64,
+    /// Indentation, m, and normal force, N.
+    pub(super) pressed: [f64; 2],
     pub(super) radius: f64,
     /// Whether the move was straight in the normal force.
     by_force: bool,
@@ -100,7 +101,7 @@ pub(super) struct Scene<'a> {
 /// [`Error::NoStressField`] for a profile whose pressure is not known; [`Error::Interrupted`].
 ///
 /// ```
-/// use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarTarget, follow};
+/// use stickslip_mechanics::rings::{EllipseArc, Options, PlanarMove, PlanarTarget, follow};
 #[doc = include_str!("../example.txt")]
 /// // Once round a circle of 0.6 u_max after a move to its beginning.
 /// let radius = 0.6 * contact.gross_slip_displacement();
@@ -108,14 +109,14 @@ pub(super) struct Scene<'a> {
 /// let mut moves = vec![target(PlanarTarget::Displacement([radius, 0.0]))];
 /// moves.extend((0..64).map(|index| {
 ///     let turns = [f64::from(index) / 64.0, f64::from(index + 1) / 64.0];
-///     target(PlanarTarget::Arc(Arc { radii: [radius, radius], phase: 0.0, turns }))
+///     target(PlanarTarget::Arc(EllipseArc { radii: [radius, radius], phase: 0.0, turns }))
 /// }));
 /// let solution = follow(setup, &moves, &Options { count: None, tolerance: 1e-3 }, &|| true).unwrap();
 /// let work = solution.states[64].dissipated_energy - solution.states[0].dissipated_energy;
 /// assert!((work / (2000.0 * 0.0075) - 0.4337).abs() < 1e-3);
 /// # Ok::<(), Error>(())
 /// ```
-pub fn follow<P: Into<Shared<Profile>>>(
+pub fn follow<P: Into<Arc<Profile>>>(
     setup: Setup<P>,
     moves: &[PlanarMove],
     options: &Options,
@@ -162,15 +163,10 @@ pub fn follow<P: Into<Shared<Profile>>>(
 }
 
 impl<'a> Scene<'a> {
-    fn new<P: Into<Shared<Profile>>>(setup: Setup<P>, moves: &'a [PlanarMove]) -> Result<Scene<'a>, Refusal> {
-        let of_contact = |error| Refusal { index: None, error };
-        let setup = setup.shared();
-        setup.profile.check_round("motion in the plane").map_err(of_contact)?;
-        setup.profile.check_stress_field().map_err(of_contact)?;
-        let contact = Contact::new(setup).map_err(of_contact)?;
+    fn new<P: Into<Arc<Profile>>>(setup: Setup<P>, moves: &'a [PlanarMove]) -> Result<Scene<'a>, Refusal> {
+        let contact = contact_of(setup).map_err(|error| Refusal { index: None, error })?;
         let load = |contact: &Contact, by_force| Load {
-            indentation: contact.indentation(),
-            normal_force: contact.normal_force(),
+            pressed: [contact.indentation(), contact.normal_force()],
             radius: contact.contact_radius(),
             by_force,
         };
@@ -186,12 +182,12 @@ impl<'a> Scene<'a> {
         // Without a contact on all of the path any units do.
         let positive = |value: f64| if value > 0.0 { value } else { 1.0 };
         let largest = |of: fn(&Load) -> f64| positive(loads.iter().map(of).fold(0.0, f64::max));
-        let (reach, depth) = (largest(|load| load.radius), largest(|load| load.indentation));
+        let (reach, depth) = (largest(|load| load.radius), largest(|load| load.pressed[0]));
         let (e_star, g_star) = (contact.elasticity().e_star(), contact.elasticity().g_star());
         Ok(Scene {
             units: Units { stiffness: g_star * reach, full: positive(contact.friction()) * e_star / g_star * depth },
-            constant_load: loads.iter().all(|load| load.indentation.to_bits() == loads[0].indentation.to_bits()),
-            largest_load: loads.iter().map(|load| load.normal_force).fold(0.0, f64::max),
+            constant_load: loads.iter().all(|load| load.pressed[0].to_bits() == loads[0].pressed[0].to_bits()),
+            largest_load: loads.iter().map(|load| load.pressed[1]).fold(0.0, f64::max),
             depth,
             reach,
             loads,
@@ -212,8 +208,8 @@ impl<'a> Scene<'a> {
     /// Follows the path by [`STEPS`] at once; returns the solution and the length of the longest step of the coarsest.
     fn pass(&self, count: usize, length: f64, keep_going: &dyn Fn() -> bool) -> Result<(Solution, f64), Refusal> {
         let at_rest = |count: usize| {
-            let (matrix, mut buffers) = (Shared::new(RingStiffness::new(count)), PlanarBuffers::default());
-            self.press(&mut buffers, &matrix, [self.loads[0].indentation, self.loads[0].normal_force]);
+            let (matrix, mut buffers) = (Arc::new(RingStiffness::new(count)), PlanarBuffers::default());
+            self.press(&mut buffers, &matrix, self.loads[0].pressed);
             Discretisation::new(matrix, self.units, buffers)
         };
         let coarse = at_rest(count / 2);
@@ -239,7 +235,7 @@ impl<'a> Scene<'a> {
     /// The sections of a move: what turns the slip, in steps of at most `length`, and the rest, which is straight.
     fn sections(&self, run: &Discretisation, index: usize, length: f64) -> Vec<Section> {
         let (step, from, to) = (&self.moves[index], &self.loads[index], &self.loads[index + 1]);
-        let pressed = (to.indentation - from.indentation).abs() / self.depth;
+        let pressed = (to.pressed[0] - from.pressed[0]).abs() / self.depth;
         let moved = match step.tangential {
             None => 0.0,
             Some(PlanarTarget::Displacement(_)) => {
@@ -299,8 +295,9 @@ impl<'a> Scene<'a> {
                 }
                 let [first, last] = section.ends;
                 let part = if number == count { last } else { first + (last - first) * number as f64 / count as f64 };
-                if from.indentation.to_bits() != to.indentation.to_bits() {
-                    self.press(&mut run.buffers, &run.matrix, self.load_at(from, to, part));
+                if from.pressed[0].to_bits() != to.pressed[0].to_bits() {
+                    let load = load_between(&self.contact, [from.pressed, to.pressed], to.by_force, part);
+                    self.press(&mut run.buffers, &run.matrix, load);
                 }
                 let here = match step.tangential {
                     Some(PlanarTarget::Arc(arc)) => arc.at(part),
@@ -325,19 +322,6 @@ impl<'a> Scene<'a> {
         }
         Ok(())
     }
-
-    /// Indentation, m, and normal force, N, at a part of a move.
-    fn load_at(&self, from: Load, to: Load, part: f64) -> [f64; 2] {
-        if part >= 1.0 {
-            return [to.indentation, to.normal_force];
-        }
-        if to.by_force {
-            let force = from.normal_force + part * (to.normal_force - from.normal_force);
-            return [self.contact.indentation_for(force).value(), force];
-        }
-        let indentation = from.indentation + part * (to.indentation - from.indentation);
-        [indentation, self.contact.normal_force_at(DoubleDouble::from(indentation))]
-    }
 }
 
 /// A part of a move that is made in equal steps.
@@ -355,7 +339,7 @@ fn distance(one: Vector, other: Vector) -> f64 {
 /// How many rings a path is followed by at first, and in how many of the coarsest steps, up to where its forces lead:
 /// what it costs.
 #[must_use]
-pub fn first_choice<P: Into<Shared<Profile>> + Clone>(
+pub fn first_choice<P: Into<Arc<Profile>> + Clone>(
     setup: &Setup<P>,
     moves: &[PlanarMove],
     options: &Options,

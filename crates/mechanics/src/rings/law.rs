@@ -12,9 +12,10 @@ pub use contact::PlanarContact;
 
 use std::sync::{Arc, OnceLock};
 
-use super::step::{Increment, PlanarBuffers, Ring, Units, dot};
+use super::load::load_between;
+use super::step::{Increment, PlanarBuffers, RingState, Units, dot};
 use super::stiffness::{RingStiffness, Vector};
-use super::{PlanarState, TURNED};
+use super::{PlanarState, TURNED, contact_of};
 use crate::contact::Contact;
 use crate::contact::state::{Normal, Setup};
 use crate::numerics::double_double::DoubleDouble;
@@ -58,10 +59,7 @@ impl PlanarLaw {
     /// whose pressure is not known, [`Error::LineContact`] for one that is not round.
     pub fn new<P: Into<Arc<Profile>>>(setup: Setup<P>, rings: usize) -> Result<PlanarLaw, Error> {
         range::RING_COUNT.check(rings as f64)?;
-        let setup = setup.shared();
-        setup.profile.check_round("motion in the plane")?;
-        setup.profile.check_stress_field()?;
-        Ok(PlanarLaw { contact: Contact::new(setup)?, matrices: (0..rings).map(|_| OnceLock::new()).collect() })
+        Ok(PlanarLaw { contact: contact_of(setup)?, matrices: (0..rings).map(|_| OnceLock::new()).collect() })
     }
 
     /// The contact of the definition at its preload, which moves along a line.
@@ -147,17 +145,10 @@ impl PlanarLaw {
             *contact = whole;
             return Ok(());
         }
-        let half = |one: f64, other: f64| 0.5 * (one + other);
-        let middle = [0, 1].map(|axis| half(contact.displacement[axis], displacement[axis]));
-        let indentation = half(contact.indentation, load[0]);
-        let half_load = match normal {
-            _ if !changes => load,
-            Normal::Indentation(_) => [indentation, self.contact.normal_force_at(DoubleDouble::from(indentation))],
-            Normal::NormalForce(force) => {
-                let force = half(contact.normal_force, force);
-                [self.contact.indentation_for(force).value(), force]
-            }
-        };
+        let middle = [0, 1].map(|axis| 0.5 * (contact.displacement[axis] + displacement[axis]));
+        let ends = [[contact.indentation, contact.normal_force], load];
+        let half_load = load_between(&self.contact, ends, matches!(normal, Normal::NormalForce(_)), 0.5);
+        let half_load = if changes { half_load } else { load };
         let dissipated = contact.dissipated;
         self.single_step(contact, half_load, middle, buffers);
         self.single_step(contact, load, displacement, buffers);
@@ -244,7 +235,7 @@ impl PlanarLaw {
             contact.merge();
         }
         self.limits(contact, buffers);
-        contact.rings.resize(buffers.limits.len().max(contact.rings.len()), Ring::default());
+        contact.rings.resize(buffers.limits.len().max(contact.rings.len()), RingState::default());
     }
 
     /// Friction times the load of each ring, N.
@@ -262,7 +253,7 @@ impl PlanarLaw {
         let matrix = self.matrices[count - 1].get_or_init(|| RingStiffness::new(count));
         let stiffness = self.contact.elasticity().g_star() * (count as f64 * contact.area).sqrt();
         let dissipated = &mut contact.dissipated;
-        let visit = &mut |_: usize, before: &Ring, ring: &Ring| {
+        let visit = &mut |_: usize, before: &RingState, ring: &RingState| {
             // It slips at the end of the step, from the force on that it had reached until then.
             let size = ring.slip[0].hypot(ring.slip[1]);
             let end = ring.bound * size;

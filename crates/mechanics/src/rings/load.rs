@@ -4,7 +4,9 @@
 //! levels (Jäger 1995) carry X - sqrt(X^2 - r^2) within r, and x dx/sqrt(x^2 - r^2) = dt after an integration by
 //! parts.
 
+use crate::contact::Contact;
 use crate::indenter::Indenter;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{EIGHT_POINTS, TWELVE_POINTS, integral};
 
 /// Kinks up to which each begins a panel of its own. A profile of more is a table, smooth but for its knots.
@@ -36,4 +38,15 @@ pub(super) fn beyond(profile: &Indenter, kinks: &[f64], indentation: f64, edge: 
         begin = end;
     }
     sum
+}
+
+/// Indentation, m, and normal force, N, at a part of the way from one load to another, straight in the indentation or
+/// in the force.
+pub(super) fn load_between(contact: &Contact, [from, to]: [[f64; 2]; 2], by_force: bool, part: f64) -> [f64; 2] {
+    let [indentation, force] = [0, 1].map(|of| from[of] + part * (to[of] - from[of]));
+    match part {
+        part if part >= 1.0 => to,
+        _ if by_force => [contact.indentation_for(force).value(), force],
+        _ => [indentation, contact.normal_force_at(DoubleDouble::from(indentation))],
+    }
 }

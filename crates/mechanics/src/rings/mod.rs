@@ -25,7 +25,9 @@ pub use straight::straight_moves;
 
 use std::f64::consts::TAU;
 
-use crate::contact::state::Normal;
+use crate::contact::Contact;
+use crate::contact::state::{Normal, Setup};
+use crate::profile::Profile;
 use crate::range::error::Error;
 use crate::range::{self, Range};
 
@@ -35,7 +37,7 @@ const NO_SLIP: f64 = 1e-12;
 /// and the radius of an arc from which on its angle counts alone.
 const TURNED: f64 = 4.0;
 
-/// The end of a move in the plane, which is straight in the quantities named, but for an [`Arc`].
+/// The end of a move in the plane, which is straight in the quantities named, but for an [`EllipseArc`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PlanarMove {
     /// The tangential target; without one the displacement stays.
@@ -54,7 +56,7 @@ pub enum PlanarTarget {
     /// Tangential force, N.
     Force([f64; 2]),
     /// Displacement along an ellipse.
-    Arc(Arc),
+    Arc(EllipseArc),
 }
 
 impl PlanarTarget {
@@ -64,7 +66,7 @@ impl PlanarTarget {
         match self {
             PlanarTarget::Displacement(to) => both(&range::DISPLACEMENT, to),
             PlanarTarget::Force(to) => both(&range::FORCE, to),
-            PlanarTarget::Arc(Arc { radii, phase, turns }) => {
+            PlanarTarget::Arc(EllipseArc { radii, phase, turns }) => {
                 both(&range::DISPLACEMENT, radii)?;
                 both(&range::TURNS, turns)?;
                 range::PHASE.check(*phase).map(drop)
@@ -75,7 +77,7 @@ impl PlanarTarget {
 
 /// A part of the ellipse x = a cos(2 pi t), y = b sin(2 pi t + phase).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arc {
+pub struct EllipseArc {
     /// a and b, m.
     pub radii: [f64; 2],
     /// Phase, radians: an upright ellipse at zero, a line at a quarter of a turn.
@@ -84,13 +86,13 @@ pub struct Arc {
     pub turns: [f64; 2],
 }
 
-impl Arc {
+impl EllipseArc {
     /// The displacement, m, at a part of the arc from 0 to 1.
     ///
     /// ```
-    /// use stickslip_mechanics::rings::Arc;
+    /// use stickslip_mechanics::rings::EllipseArc;
     ///
-    /// let arc = Arc { radii: [2.0, 1.0], phase: 0.0, turns: [0.0, 0.25] };
+    /// let arc = EllipseArc { radii: [2.0, 1.0], phase: 0.0, turns: [0.0, 0.25] };
     /// assert_eq!(arc.at(0.0), [2.0, 0.0]);
     /// assert!((arc.at(1.0)[1] - 1.0).abs() < 1e-15);
     /// ```
@@ -100,4 +102,12 @@ impl Arc {
         let angle = TAU * (begin + part * (end - begin)).fract();
         [self.radii[0] * angle.cos(), self.radii[1] * (angle + self.phase).sin()]
     }
+}
+
+/// The contact of a definition that can be moved in the plane.
+fn contact_of<P: Into<std::sync::Arc<Profile>>>(setup: Setup<P>) -> Result<Contact, Error> {
+    let setup = setup.shared();
+    setup.profile.check_round("motion in the plane")?;
+    setup.profile.check_stress_field()?;
+    Contact::new(setup)
 }

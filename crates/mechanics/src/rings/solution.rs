@@ -104,6 +104,7 @@ impl Blend {
     /// Adds the state after the move of this number.
     pub(super) fn add(&mut self, scene: &Scene<'_>, runs: &[Discretisation; 4], index: usize) {
         let load = scene.loads[index + 1];
+        let [indentation, normal_force] = load.pressed;
         let value = |of: &dyn Fn(&Discretisation) -> f64| blended([0, 1, 2, 3].map(|run| of(&runs[run])));
         let error = |of: &dyn Fn(&Discretisation) -> f64| estimates([0, 1, 2, 3].map(|run| of(&runs[run])));
         let pair = |of: fn(&Discretisation) -> Vector| [0, 1].map(|axis| value(&|run| of(run)[axis]));
@@ -141,13 +142,13 @@ impl Blend {
         let before = self.states.last().map_or(0.0, |state| state.dissipated_energy);
         let dissipated = value(&|run| run.dissipated.iter().sum());
         self.raised = self.raised.max(before - dissipated);
-        let (stick_radius, regime) = stick(scene, fine, load.indentation, load.radius);
+        let (stick_radius, regime) = stick(scene, fine, indentation, load.radius);
         self.states.push(PlanarState {
             displacement,
             force,
-            indentation: load.indentation,
-            normal_force: load.normal_force,
-            contact_radius: if load.indentation < 0.0 { 0.0 } else { load.radius },
+            indentation,
+            normal_force,
+            contact_radius: if indentation < 0.0 { 0.0 } else { load.radius },
             stick_radius,
             regime,
             dissipated_energy: dissipated + self.raised,

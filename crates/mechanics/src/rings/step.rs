@@ -10,7 +10,7 @@ use super::stiffness::{RingStiffness, Vector};
 use crate::indenter::Indenter;
 
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Ring {
+pub(super) struct RingState {
     /// Friction times the normal force on it, N.
     pub(super) bound: f64,
     /// The tangential force on it, N.
@@ -85,11 +85,11 @@ impl PlanarBuffers {
     /// length. `visit` is told each ring before and after it.
     pub(super) fn step(
         &mut self,
-        rings: &mut [Ring],
+        rings: &mut [RingState],
         matrix: &RingStiffness,
         Units { stiffness: unit, full }: Units,
         increment: Increment,
-        visit: &mut dyn FnMut(usize, &Ring, &Ring),
+        visit: &mut dyn FnMut(usize, &RingState, &RingState),
     ) -> Stepped {
         let PlanarBuffers { limits, bounds, forces, traction, slip, workspace, .. } = self;
         let (by_force, pushed) = match increment {
@@ -119,7 +119,8 @@ impl PlanarBuffers {
         }
         for (index, ring) in rings.iter_mut().enumerate() {
             let (before, slip) = (*ring, slip[index]);
-            *ring = Ring { bound: limits[index], traction: traction[index].map(|component| component * unit), slip };
+            *ring =
+                RingState { bound: limits[index], traction: traction[index].map(|component| component * unit), slip };
             let moved = [done.by[0] - slip[0], done.by[1] - slip[1]];
             done.elastic += 0.5 * (dot(before.traction, moved) + dot(ring.traction, moved));
             done.force = [0, 1].map(|axis| done.force[axis] + ring.traction[axis]);

@@ -4,7 +4,7 @@
 use std::f64::consts::TAU;
 
 use stickslip_mechanics::profile::{Cone, LoadCurve};
-use stickslip_mechanics::rings::{Arc, Options, PlanarMove, PlanarState, PlanarTarget, Solution, follow};
+use stickslip_mechanics::rings::{EllipseArc, Options, PlanarMove, PlanarState, PlanarTarget, Solution, follow};
 use stickslip_mechanics::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Tangential};
 
 use crate::support::{Random, UNIT, cases, shapes};
@@ -24,7 +24,7 @@ fn solve(setup: Setup, moves: &[PlanarMove], options: &Options) -> Solution {
 fn ellipse(radii: [f64; 2], per_turn: usize, turns: usize) -> Vec<PlanarMove> {
     let arc = |index: usize| {
         let turns = [index, index + 1].map(|index| index as f64 / per_turn as f64);
-        to(PlanarTarget::Arc(Arc { radii, phase: 0.0, turns }))
+        to(PlanarTarget::Arc(EllipseArc { radii, phase: 0.0, turns }))
     };
     let begin = to(PlanarTarget::Displacement([radii[0], 0.0]));
     std::iter::once(begin).chain((0..per_turn * turns).map(arc)).collect()
@@ -326,12 +326,12 @@ fn numbers_of_options_and_arcs_out_of_range_are_refused_at_their_move() {
         let refused = follow(UNIT.setup(), &ellipse([0.5, 0.5], 8, 1), &Options { count: None, tolerance }, &|| true);
         assert!(refused.is_err_and(|refusal| refusal.index.is_none()), "{tolerance}");
     }
-    let arc = Arc { radii: [0.5, 0.5], phase: 0.0, turns: [0.0, 0.1] };
+    let arc = EllipseArc { radii: [0.5, 0.5], phase: 0.0, turns: [0.0, 0.1] };
     let bad = [
-        PlanarTarget::Arc(Arc { radii: [f64::NAN, 0.5], ..arc }),
-        PlanarTarget::Arc(Arc { radii: [0.5, f64::INFINITY], ..arc }),
-        PlanarTarget::Arc(Arc { phase: f64::NAN, ..arc }),
-        PlanarTarget::Arc(Arc { turns: [0.0, 1e300], ..arc }),
+        PlanarTarget::Arc(EllipseArc { radii: [f64::NAN, 0.5], ..arc }),
+        PlanarTarget::Arc(EllipseArc { radii: [0.5, f64::INFINITY], ..arc }),
+        PlanarTarget::Arc(EllipseArc { phase: f64::NAN, ..arc }),
+        PlanarTarget::Arc(EllipseArc { turns: [0.0, 1e300], ..arc }),
         PlanarTarget::Displacement([f64::NAN, 0.0]),
         PlanarTarget::Force([0.0, f64::NEG_INFINITY]),
     ];

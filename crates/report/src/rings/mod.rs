@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use stickslip_mechanics::rings::{
-    Arc, Options, PlanarBuffers, PlanarLaw, PlanarMove, PlanarState, PlanarTarget, Solution, follow,
+    EllipseArc, Options, PlanarBuffers, PlanarLaw, PlanarMove, PlanarState, PlanarTarget, Solution, follow,
 };
 use stickslip_mechanics::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
@@ -91,8 +91,8 @@ pub fn two_turns(
 ) -> Result<Solution, Error> {
     let to = |target| PlanarMove { tangential: Some(target), ..PlanarMove::default() };
     let turn = |index: usize| index as f64 / per_turn as f64;
-    let arc = |index: usize| Arc { radii, phase, turns: [turn(index), turn(index + 1)] };
-    let begin = to(PlanarTarget::Displacement(Arc { radii, phase, turns: [0.0; 2] }.at(0.0)));
+    let arc = |index: usize| EllipseArc { radii, phase, turns: [turn(index), turn(index + 1)] };
+    let begin = to(PlanarTarget::Displacement(EllipseArc { radii, phase, turns: [0.0; 2] }.at(0.0)));
     let arcs = (0..2 * per_turn).map(|index| to(PlanarTarget::Arc(arc(index))));
     let moves: Vec<PlanarMove> = std::iter::once(begin).chain(arcs).collect();
     let solution = follow(sphere(Preload::Indentation(1.0))?, &moves, &Options { count, tolerance }, &|| true);

@@ -1,6 +1,6 @@
 //! One contact of a law, with rings that are halved and doubled as it shrinks and grows.
 
-use super::super::step::Ring;
+use super::super::step::RingState;
 use super::super::stiffness::Vector;
 use super::PlanarState;
 use crate::contact::state::Regime;
@@ -23,7 +23,7 @@ pub struct PlanarContact {
     /// The area of a ring over pi, m^2; zero without a contact.
     pub(super) area: f64,
     /// Those that touch, from the centre outwards.
-    pub(super) rings: Vec<Ring>,
+    pub(super) rings: Vec<RingState>,
 }
 
 impl PlanarContact {
@@ -71,7 +71,7 @@ impl PlanarContact {
     /// Bytes of RAM that it takes.
     #[must_use]
     pub fn memory_bytes(&self) -> usize {
-        size_of::<PlanarContact>() + self.rings.capacity() * size_of::<Ring>()
+        size_of::<PlanarContact>() + self.rings.capacity() * size_of::<RingState>()
     }
 
     /// Whether this load, of an indentation, m, and a normal force, N, is not the present one.
@@ -105,7 +105,7 @@ impl PlanarContact {
     /// Makes one ring of two: the force on both stays.
     pub(super) fn merge(&mut self) {
         self.area *= 2.0;
-        let merged = |pair: &[Ring]| Ring {
+        let merged = |pair: &[RingState]| RingState {
             bound: pair.iter().map(|ring| ring.bound).sum(),
             traction: [0, 1].map(|axis| pair.iter().map(|ring| ring.traction[axis]).sum()),
             slip: [0.0; 2],
@@ -116,11 +116,11 @@ impl PlanarContact {
     /// Makes two rings of one: the force on it is shared as the bounds are.
     pub(super) fn split(&mut self, bounds: &[f64]) {
         let halves = self.rings.iter().zip(bounds.chunks(2));
-        let of_ring = |(ring, pair): (&Ring, &[f64])| {
+        let of_ring = |(ring, pair): (&RingState, &[f64])| {
             let (traction, whole) = (ring.traction, pair.iter().sum::<f64>());
             let half = move |bound: &f64| {
                 let share = if whole > 0.0 { bound / whole } else { 0.0 };
-                Ring { bound: *bound, traction: traction.map(|component| component * share), slip: [0.0; 2] }
+                RingState { bound: *bound, traction: traction.map(|component| component * share), slip: [0.0; 2] }
             };
             pair.iter().map(half).collect::<Vec<_>>()
         };

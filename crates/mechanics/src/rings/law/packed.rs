@@ -1,6 +1,6 @@
 //! A contact in the plane as bytes and back, equal to the last bit: the state of its rings, little-endian `f64`.
 
-use super::{PlanarContact, PlanarLaw, Ring, Vector};
+use super::{PlanarContact, PlanarLaw, RingState, Vector};
 use crate::contact::packed::{is_current, write_versions};
 use crate::contact::state::Normal;
 use crate::numerics::packing::{Packed, Reader, packed};
@@ -8,7 +8,20 @@ use crate::numerics::packing::{Packed, Reader, packed};
 /// A prescribed normal force may differ so much from that of its indentation, relatively.
 const SAME_LOAD: f64 = 1e-9;
 
-packed!(Ring { bound, traction, slip });
+packed!(RingState { bound, traction, slip });
+packed!(PlanarContact {
+    indentation,
+    normal_force,
+    radius,
+    displacement,
+    force,
+    stick_radius,
+    dissipated,
+    elastic,
+    unsettled,
+    area,
+    rings
+});
 
 impl Packed for Vector {
     fn pack(&self, bytes: &mut Vec<u8>) {
@@ -17,6 +30,18 @@ impl Packed for Vector {
 
     fn unpack(reader: &mut Reader<'_>) -> Option<Vector> {
         Some([f64::unpack(reader)?, f64::unpack(reader)?])
+    }
+}
+
+/// All that is left of the bytes.
+impl Packed for Vec<RingState> {
+    fn pack(&self, bytes: &mut Vec<u8>) {
+        self.iter().for_each(|ring| ring.pack(bytes));
+    }
+
+    fn unpack(reader: &mut Reader<'_>) -> Option<Vec<RingState>> {
+        let count = reader.count(size_of::<RingState>())?;
+        (0..count).map(|_| RingState::unpack(reader)).collect()
     }
 }
 
@@ -44,12 +69,7 @@ impl PlanarLaw {
         let mut bytes = Vec::new();
         write_versions(&mut bytes);
         self.marks().iter().for_each(|mark| mark.pack(&mut bytes));
-        let PlanarContact { indentation, normal_force, radius, displacement, force, .. } = contact;
-        let PlanarContact { stick_radius, dissipated, elastic, unsettled, area, rings, .. } = contact;
-        [indentation, normal_force, radius].into_iter().for_each(|number| number.pack(&mut bytes));
-        [displacement, force].into_iter().for_each(|vector| vector.pack(&mut bytes));
-        [stick_radius, dissipated, elastic, unsettled, area].into_iter().for_each(|number| number.pack(&mut bytes));
-        rings.iter().for_each(|ring| ring.pack(&mut bytes));
+        contact.pack(&mut bytes);
         bytes
     }
 
@@ -63,27 +83,9 @@ impl PlanarLaw {
         for mark in self.marks() {
             reader.any().filter(|found| found.to_bits() == mark.to_bits())?;
         }
-        let mut next = || f64::unpack(&mut reader);
-        let (indentation, normal_force, radius) = (next()?, next()?, next()?);
-        let (displacement, force) = (Vector::unpack(&mut reader)?, Vector::unpack(&mut reader)?);
-        let mut next = || f64::unpack(&mut reader);
-        let (stick_radius, dissipated, elastic) = (next()?, next()?, next()?);
-        let (unsettled, area) = (next()?, next()?);
-        let count = reader.count(size_of::<Ring>())?;
-        let rings = (0..count).map(|_| Ring::unpack(&mut reader)).collect::<Option<Vec<_>>>()?;
-        let state = PlanarContact {
-            indentation,
-            normal_force,
-            radius,
-            displacement,
-            force,
-            stick_radius,
-            dissipated,
-            elastic,
-            unsettled,
-            area,
-            rings,
-        };
+        let state = PlanarContact::unpack(&mut reader)?;
+        let &PlanarContact { indentation, normal_force, radius, area, .. } = &state;
+        let count = state.rings.len();
         // Steps rely on rings that cover the contact.
         let [_, load] = self.load(Normal::Indentation(indentation)).ok()?;
         let pressed = if indentation < 0.0 { 0.0 } else { self.contact.indenter.radius(indentation) };
