@@ -1,21 +1,20 @@
 //! Steady cycles under a load that oscillates too: stepped with the exact memory until they close.
 //!
-//! The drive is S0 cos(t), the load N + dN cos(t + phase). Such a path is curved; here it is followed by pairs of exact
-//! straight moves, which end on the curve at equal steps of t. Where the displacement is given, the point between them
-//! is moved off the curve so that the pair has its integral of U over d, on which friction work and the displacement of
-//! newly touched levels depend (`curve_panel` says why), and steps are divided where slip begins or ends: what is left
-//! falls with the fourth power of the step. Driven by a force, or through a machine, the steps in which slip turns are
-//! not known, and it falls with the square. The steps are halved until two results agree.
+//! The drive is S0 cos(t), the load N + dN cos(t + phase). Such a path is curved. Where the displacement is given it is
+//! followed as curved moves are (`path/curved_move.rs`), in stretches that end at equal steps of t and where the load
+//! turns: the integral of W over d of a pair of chords is that of the curve by Simpson's rule, and what is left falls
+//! with the fourth power of the step. Driven by a force, or through a machine, the path is followed by chords between
+//! its points, and it falls with the square. The steps are halved until two results agree.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use super::Drive;
 use super::lap::OscillatingCycle;
 use crate::contact::Contact;
 use crate::contact::state::Normal;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::roots::{between, turning};
-use crate::path::curved_path::PathPoint;
+use crate::numerics::roots::between;
+use crate::path::curved_path::{CurvedPath, PathPoint};
 use crate::range::error::Error;
 use crate::range::unit_prefix::short;
 use crate::range::{self, Quantity};
@@ -27,7 +26,7 @@ const MOST: usize = 1 << 14;
 const CYCLES: usize = 32;
 /// Two cycles are the same if their work and force agree to this part of mu F_N and of its work.
 const CLOSED: f64 = 1e-12;
-/// Where slip turns closer than this part of a step to its end, it turns there.
+/// Where the load turns closer than this part of a step to its end, it turns there.
 const SAME_TURN: f64 = 1e-9;
 
 /// An amplitude of the load, and by how much it runs ahead of the drive.
@@ -107,18 +106,23 @@ impl Oscillation {
             }
     }
 
-    /// The normal side of the path at an angle of the drive: indentation and normal force.
-    fn load_at(&self, contact: &Contact, angle: f64) -> (DoubleDouble, f64) {
-        let swing = (angle + self.load.phase).cos();
+    /// The indentation, m, at an angle of the drive.
+    fn indentation_at(&self, contact: &Contact, angle: f64) -> DoubleDouble {
+        match self.load.amplitude {
+            Normal::NormalForce(_) => contact.indentation_for(self.normal_force_at(contact, angle)),
+            Normal::Indentation(amplitude) => {
+                contact.history.edge().level + DoubleDouble::from(amplitude * (angle + self.load.phase).cos())
+            }
+        }
+    }
+
+    /// The normal force there, N.
+    fn normal_force_at(&self, contact: &Contact, angle: f64) -> f64 {
         match self.load.amplitude {
             Normal::NormalForce(amplitude) => {
-                let force = (contact.normal_force + amplitude * swing).max(0.0);
-                (contact.indentation_for(force), force)
+                (contact.normal_force + amplitude * (angle + self.load.phase).cos()).max(0.0)
             }
-            Normal::Indentation(amplitude) => {
-                let level = contact.history.edge().level + DoubleDouble::from(amplitude * swing);
-                (level, contact.normal_force_at(level))
-            }
+            Normal::Indentation(_) => contact.normal_force_at(self.indentation_at(contact, angle)),
         }
     }
 
@@ -152,7 +156,7 @@ impl Oscillation {
     ) -> Result<OscillatingCycle, Error> {
         self.check(contact)?;
         let mut moving = contact.without_history();
-        self.step_to(contact, &mut moving, 0.0, None)?;
+        Swing { oscillation: self, contact, angles: [0.0; 2] }.chord_to(&mut moving, 1.0)?;
         let unit = self.force_unit(contact);
         let (mut before, mut end) = self.lap(contact, &mut moving, (steps, count), keep_going)?;
         for _ in 1..CYCLES {
@@ -161,7 +165,7 @@ impl Oscillation {
             let work = (lap.dissipated_energy - before.dissipated_energy).abs() / most;
             let change = work.max((ends - end).abs() / unit.max(f64::MIN_POSITIVE));
             // Under a driven displacement a cycle clamps each spring to the same bounds again: the first one closes.
-            lap.error = if self.displaced().is_some() { 0.0 } else { change };
+            lap.error = if self.displaces() { 0.0 } else { change };
             (before, end) = (lap, ends);
             if before.error <= CLOSED {
                 break;
@@ -181,16 +185,18 @@ impl Oscillation {
         let start = moving.dissipated;
         let (mut states, mut answers) = (vec![moving.state()], Vec::with_capacity(steps / 2));
         for index in 1..=steps / 2 {
-            if !keep_going() {
-                return Err(Error::Interrupted);
-            }
             let angle = |step: usize| TAU * step as f64 / steps as f64;
-            let (from, to) = (angle(2 * index - 2), angle(2 * index));
-            let mut here = from;
-            for next in self.turns(contact, from, to).into_iter().chain([to]) {
-                let middle = 0.5 * (here + next);
-                self.step_to(contact, moving, middle, self.elbow(contact, [here, middle, next]))?;
-                self.step_to(contact, moving, next, None)?;
+            let [mut here, to] = [angle(2 * index - 2), angle(2 * index)];
+            for next in self.turn([here, to]).into_iter().chain([to]) {
+                let stretch = Swing { oscillation: self, contact, angles: [here, next] };
+                if self.displaces() {
+                    moving.follow(&stretch, f64::INFINITY, keep_going, &mut |_, _| ())?;
+                } else if keep_going() {
+                    stretch.chord_to(moving, 0.5)?;
+                    stretch.chord_to(moving, 1.0)?;
+                } else {
+                    return Err(Error::Interrupted);
+                }
                 here = next;
                 states.push(moving.state());
             }
@@ -202,12 +208,9 @@ impl Oscillation {
         Ok((cycle, moving.force()))
     }
 
-    /// The amplitude of the displacement where that is given, m.
-    fn displaced(&self) -> Option<f64> {
-        match self.drive {
-            Drive::Displacement(amplitude) if self.compliance <= 0.0 => Some(amplitude),
-            _ => None,
-        }
+    /// Whether the displacement of the indenter is given.
+    fn displaces(&self) -> bool {
+        matches!(self.drive, Drive::Displacement(_)) && self.compliance <= 0.0
     }
 
     /// Change of the indentation per angle of the drive, m.
@@ -216,75 +219,17 @@ impl Oscillation {
         match self.load.amplitude {
             Normal::Indentation(amplitude) => amplitude * swing,
             Normal::NormalForce(amplitude) => {
-                let radius = contact.indenter.radius(self.load_at(contact, angle).0.value());
+                let radius = contact.indenter.radius(self.indentation_at(contact, angle).value());
                 amplitude * swing / (2.0 * contact.elasticity.e_star() * radius)
             }
         }
     }
 
-    /// The angles inside a step at which the load turns or slip begins or ends: where d or, if the displacement is
-    /// given, W - d or W + d has an extremum.
-    fn turns(&self, contact: &Contact, from: f64, to: f64) -> Vec<f64> {
-        let signs: &[f64] = if self.displaced().is_some() { &[0.0, 1.0, -1.0] } else { &[0.0] };
-        let scaled = self.displaced().map_or(0.0, |amplitude| contact.scaled(amplitude.into()).value());
-        let turn = |&sign: &f64| {
-            let rate = |angle: f64| -sign * scaled * angle.sin() - self.sinking(contact, angle);
-            let rising = rate(from) > 0.0;
-            if rising == (rate(to) > 0.0) {
-                return None;
-            }
-            let [low, high] = turning([from, to], |angle| (rate(angle) > 0.0) != rising);
-            let margin = SAME_TURN * (to - from);
-            (low > from + margin && high < to - margin).then_some(high)
-        };
-        let mut turns: Vec<f64> = signs.iter().filter_map(turn).collect();
-        turns.sort_by(f64::total_cmp);
-        turns
-    }
-
-    /// The displacement, m, between two straight moves with the integral of U over d of the curve; `None` where it is
-    /// not given, or where one of the two would slip otherwise than the curve.
-    fn elbow(&self, contact: &Contact, angles: [f64; 3]) -> Option<f64> {
-        let amplitude = self.displaced()?;
-        let moved = angles.map(|angle| amplitude * angle.cos());
-        let levels = angles.map(|angle| self.load_at(contact, angle).0);
-        let rates = angles.map(|angle| self.sinking(contact, angle));
-        // Simpson's rule.
-        let curve =
-            (moved[0] * rates[0] + 4.0 * moved[1] * rates[1] + moved[2] * rates[2]) * (angles[2] - angles[0]) / 6.0;
-        let [low, high] = [levels[1] - levels[0], levels[2] - levels[1]].map(DoubleDouble::value);
-        let elbow = (2.0 * curve - moved[0] * low - moved[2] * high) / (low + high);
-        let slips = |middle: f64| {
-            let ways = [(middle - moved[0], low), (moved[2] - middle, high)];
-            ways.map(|(advance, rise)| [advance > contact.scale() * rise, -advance > contact.scale() * rise])
-        };
-        let same = low * high > 0.0 && slips(moved[1]) == slips(elbow) && slips(elbow)[0] == slips(elbow)[1];
-        same.then_some(elbow)
-    }
-
-    /// Moves on to an angle of the drive, or to an elbow beside it.
-    fn step_to(&self, contact: &Contact, moving: &mut Contact, angle: f64, elbow: Option<f64>) -> Result<(), Error> {
-        let (indentation, normal_force) = self.load_at(contact, angle);
-        let limit = contact.friction * normal_force;
-        let displacement = match self.drive {
-            Drive::Displacement(amplitude) => {
-                let target = elbow.unwrap_or(amplitude * angle.cos());
-                if self.compliance > 0.0 && limit > 0.0 {
-                    self.shared(moving, (indentation, normal_force), target)
-                } else {
-                    DoubleDouble::from(target)
-                }
-            }
-            Drive::Force(amplitude) => {
-                let target = amplitude * angle.cos();
-                if target.abs() >= limit && target.abs() > 0.0 {
-                    return Err(Error::ForceExceedsFriction { target, limit, part: angle / TAU });
-                }
-                moving.displacement_for(indentation, normal_force, target)
-            }
-        };
-        moving.advance(&PathPoint { indentation, normal_force, displacement });
-        Ok(())
+    /// The angle inside a step at which the load turns.
+    fn turn(&self, [from, to]: [f64; 2]) -> Option<f64> {
+        let turn = ((from + self.load.phase) / PI).ceil() * PI - self.load.phase;
+        let margin = SAME_TURN * (to - from);
+        (turn > from + margin && turn < to - margin).then_some(turn)
     }
 
     /// The displacement of the indenter where it and the machine take `target` together, m.
@@ -300,5 +245,60 @@ impl Oscillation {
             return DoubleDouble::from(target - self.compliance * force);
         }
         at(between([(-most, at_low), (most, at_high)], 4.0 * f64::EPSILON * limit, missing))
+    }
+}
+
+/// The path between two angles of the drive.
+struct Swing<'a> {
+    oscillation: &'a Oscillation,
+    /// Under the mean load.
+    contact: &'a Contact,
+    angles: [f64; 2],
+}
+
+impl Swing<'_> {
+    fn angle(&self, part: f64) -> f64 {
+        let [from, to] = self.angles;
+        if part < 1.0 { from + part * (to - from) } else { to }
+    }
+
+    /// Moves straight to a point of the path, at which friction must hold a driven force.
+    fn chord_to(&self, moving: &mut Contact, part: f64) -> Result<(), Error> {
+        if let Drive::Force(amplitude) = self.oscillation.drive {
+            let (target, limit) =
+                (amplitude * self.angle(part).cos(), moving.friction * self.normal_force(moving, part));
+            if target.abs() >= limit && target.abs() > 0.0 {
+                return Err(Error::ForceExceedsFriction { target, limit, part: self.angle(part) / TAU });
+            }
+        }
+        moving.advance(&self.point(moving, part));
+        Ok(())
+    }
+}
+
+impl CurvedPath for Swing<'_> {
+    fn normal_force(&self, _moving: &Contact, part: f64) -> f64 {
+        self.oscillation.normal_force_at(self.contact, self.angle(part))
+    }
+
+    fn point(&self, moving: &Contact, part: f64) -> PathPoint {
+        let indentation = self.oscillation.indentation_at(self.contact, self.angle(part));
+        let normal_force = self.normal_force(moving, part);
+        let swing = self.angle(part).cos();
+        let displacement = match self.oscillation.drive {
+            Drive::Displacement(amplitude)
+                if self.oscillation.compliance > 0.0 && moving.friction * normal_force > 0.0 =>
+            {
+                self.oscillation.shared(moving, (indentation, normal_force), amplitude * swing)
+            }
+            Drive::Displacement(amplitude) => DoubleDouble::from(amplitude * swing),
+            Drive::Force(amplitude) => moving.displacement_for(indentation, normal_force, amplitude * swing),
+        };
+        PathPoint { indentation, normal_force, displacement }
+    }
+
+    fn rate(&self, part: f64) -> Option<f64> {
+        let [from, to] = self.angles;
+        Some((to - from) * self.oscillation.sinking(self.contact, self.angle(part)))
     }
 }

@@ -11,7 +11,7 @@
 use crate::contact::Contact;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::gauss::{self, EIGHT_POINTS, TWENTY_POINTS};
-use crate::path::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use crate::path::curved_path::{CurvedPath, PathPoint};
 use crate::profile::Ring;
 
 /// A rate of slip below this, relative to the levels and positions that it is a difference of, is rounding.
@@ -81,17 +81,35 @@ fn slips((advance, rise): (DoubleDouble, DoubleDouble), sign: f64, noise: f64) -
 /// How far into a ring, from its outer end, its kernel is asked for where it is infinite at the inner one.
 const BESIDE: f64 = 0.999;
 
+/// [`CurvedPath::gain`] where W is straight in F_N.
+pub(super) fn lever(contact: &Contact, ring: &Ring, advance: f64) -> (f64, f64) {
+    let inner = ring.inner.radius;
+    let lever = over_ring(contact, ring, |x, _, left| (2.0 * x - inner) * left);
+    let rate = advance / (inner * ring.depth + contact.indenter.moments(ring).first);
+    (rate * lever.value, (rate * lever.difference).abs())
+}
+
+/// [`CurvedPath::gain`] where F_x is straight in d.
+pub(super) fn lag(contact: &Contact, ring: &Ring, advance: f64) -> (f64, f64) {
+    let (inner, outer, depth) = (ring.inner.radius, ring.outer.radius, ring.depth);
+    let bend = over_ring(contact, ring, |x, risen, _| risen / x / x);
+    let rate = advance / (depth / outer + bend.value);
+    if inner > 0.5 * outer {
+        let lag = over_ring(contact, ring, |x, _, left| inner / x * (left / x));
+        (rate * lag.value, (rate * lag.difference).abs())
+    } else {
+        // The same by K, since h/x^2 is steep where the ring begins next to the axis.
+        let lag = depth * (1.0 - inner / outer) - inner * bend.value;
+        (rate * lag, (rate * inner * bend.difference).abs())
+    }
+}
+
 impl Contact {
     /// The displacement, scaled, m, at which a contact that does not slip has the tangential force `target`, N, on a
-    /// path straight in (F_x, d); `None` where it slips, or on another path.
-    pub(crate) fn stuck_position(
-        &self,
-        path: &CurvedMove,
-        indentation: DoubleDouble,
-        target: f64,
-    ) -> Option<DoubleDouble> {
+    /// path straight in (F_x, d); `None` where it slips.
+    pub(super) fn stuck_position(&self, indentation: DoubleDouble, target: f64) -> Option<DoubleDouble> {
         let here = self.history.edge().level;
-        if !matches!(path.normal, NormalPath::Indentation { .. }) || here.value() < 0.0 || indentation <= here {
+        if here.value() < 0.0 || indentation <= here {
             return None;
         }
         let ring = Ring::between(self.indenter.point(here), self.indenter.point(indentation));
@@ -110,15 +128,16 @@ impl Contact {
     }
 
     /// The stretch of a path from here, at `done`, to `next`.
-    pub(crate) fn panel(&self, path: &CurvedMove, done: f64, next: f64) -> PathPanel {
-        let end = self.point_on(path, next);
+    pub(crate) fn panel(&self, path: &dyn CurvedPath, done: f64, next: f64) -> PathPanel {
+        let end = path.point(self, next);
         let start = self.history.edge().level;
         let rise = end.indentation - start;
         let mut panel =
             PathPanel { elbow: end, end, sticks: false, turn: None, within: 0.0, quadrature: 0.0, kernel: 0.0 };
-        let middle = self.point_on(path, 0.5 * (done + next));
+        let middle = path.point(self, 0.5 * (done + next));
         let rises = (middle.indentation - start, end.indentation - middle.indentation);
-        if rise.value().abs() <= 0.0 || rises.0.value() * rises.1.value() <= 0.0 {
+        let (lower, upper) = if rise.value() > 0.0 { (start, end.indentation) } else { (end.indentation, start) };
+        if upper.value() <= 0.0 || rises.0.value() * rises.1.value() <= 0.0 {
             return panel;
         }
         panel.elbow = middle;
@@ -138,16 +157,27 @@ impl Contact {
             (!same).then_some((sign, at_ends[0]))
         });
         panel.sticks = rise.value() > 0.0 && [1.0, -1.0].into_iter().all(|sign| slip(sign) == [false, false]);
-        let (lower, upper) = if rise.value() > 0.0 { (start, end.indentation) } else { (end.indentation, start) };
         let lower = if lower.value() > 0.0 { lower } else { DoubleDouble::ZERO };
         let ring = Ring::between(self.indenter.point(lower), self.indenter.point(upper));
-        if panel.sticks {
-            self.bend_stuck(path, &mut panel, &ring, (whole.value(), bend));
+        let rates = [done, 0.5 * (done + next), next].map(|part| path.rate(part));
+        if panel.sticks && rates[0].is_none() {
+            if let Some(gained) = path.gain(self, &ring, whole.value()) {
+                self.bend_stuck(gained, &mut panel, &ring, (whole.value(), bend));
+            }
             return panel;
         }
         // The state at the end is that of the curve already. The friction work is not: the slip of a level under the
-        // bound d - y depends on int W dd, here that of the parabola.
-        let area = bend * (first.abs().powi(3) + second.abs().powi(3)) / 6.0;
+        // bound d - y depends on int W dd, by Simpson's rule over the path or that of the parabola.
+        let parabola = bend * (first.abs().powi(3) + second.abs().powi(3)) / 6.0;
+        let area = match rates {
+            [Some(_), Some(at_middle), Some(at_end)] => {
+                let [half, whole] = [half, whole].map(DoubleDouble::value);
+                let chords = 0.5 * (half * first + (half + whole) * second);
+                rise.value().signum() * (chords - (4.0 * half * at_middle + whole * at_end) * (next - done) / 6.0)
+            }
+            _ => parabola,
+        };
+        let area = if area.is_finite() { area } else { parabola };
         let shift = DoubleDouble::from(-2.0 * area / rise.value().abs());
         let bent = [(half + shift, rises.0), (whole - half - shift, rises.1)];
         if [1.0, -1.0].into_iter().all(|sign| bent.map(|way| slips(way, sign, noise)) == slip(sign)) {
@@ -157,32 +187,10 @@ impl Contact {
         panel
     }
 
-    /// The elbow and the errors of a stretch without slip, on which the position advances by `whole`.
-    fn bend_stuck(&self, path: &CurvedMove, panel: &mut PathPanel, ring: &Ring, (whole, bend): (f64, f64)) {
-        let inner = ring.inner.radius;
+    /// The elbow and the errors of a stretch without slip, on which the position advances by `whole` and int w dx grows
+    /// by `gained`, up to an error.
+    fn bend_stuck(&self, (gained, error): (f64, f64), panel: &mut PathPanel, ring: &Ring, (whole, bend): (f64, f64)) {
         let touched = self.indenter.moments(ring).first;
-        let (gained, error) = match (path.tangential, path.normal) {
-            (TangentialPath::Displacement { .. }, NormalPath::Force { .. }) => {
-                let lever = over_ring(self, ring, |x, _, left| (2.0 * x - inner) * left);
-                let rate = whole / (inner * ring.depth + touched);
-                (rate * lever.value, (rate * lever.difference).abs())
-            }
-            (TangentialPath::Force { .. }, NormalPath::Indentation { .. }) => {
-                let (outer, depth) = (ring.outer.radius, ring.depth);
-                let bend = over_ring(self, ring, |x, risen, _| risen / x / x);
-                let rate = whole / (depth / outer + bend.value);
-                if inner > 0.5 * outer {
-                    let lag = over_ring(self, ring, |x, _, left| inner / x * (left / x));
-                    (rate * lag.value, (rate * lag.difference).abs())
-                } else {
-                    // The same by K, since h/x^2 is steep where the ring begins next to the axis.
-                    let lag = depth * (1.0 - inner / outer) - inner * bend.value;
-                    (rate * lag, (rate * inner * bend.difference).abs())
-                }
-            }
-            // In two forces dU/dd = (E*/G*) dF_x/dF_N, and in displacement and indentation, the path is straight.
-            _ => return,
-        };
         let middle = self.indenter.point(panel.elbow.indentation);
         let (low, high) = (Ring::between(ring.inner, middle), Ring::between(middle, ring.outer));
         let (low_moments, high_moments) = (self.indenter.moments(&low), self.indenter.moments(&high));

@@ -11,8 +11,9 @@ use std::ops::{Add, Mul, Sub};
 use crate::contact::Contact;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::roots::{largest, turning};
-use crate::path::curve_panel::PathPanel;
-use crate::path::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use crate::path::curve_panel::{PathPanel, lag, lever};
+use crate::path::curved_path::{CurvedMove, CurvedPath, NormalPath, PathPoint, TangentialPath};
+use crate::profile::Ring;
 use crate::range::error::Error;
 
 /// Error of the tangential force, relative to mu F_N, that a move may have unless the caller prescribes another.
@@ -63,12 +64,13 @@ impl Contact {
     /// relative to mu F_N. `visit` is told the part of the path that is done, from 0 to 1, and the end of each chord.
     pub(crate) fn follow(
         &mut self,
-        path: &CurvedMove,
+        path: &dyn CurvedPath,
         tolerance: f64,
         keep_going: &dyn Fn() -> bool,
         visit: &mut dyn FnMut(f64, &Contact),
     ) -> Result<(), Error> {
-        if matches!(path.normal, NormalPath::Force { .. }) && self.history.edge().level < DoubleDouble::ZERO {
+        let here = self.history.edge().level;
+        if here < DoubleDouble::ZERO && path.point(self, 0.0).indentation > here {
             // A gap closes before any force can rise.
             let touch =
                 PathPoint { indentation: DoubleDouble::ZERO, normal_force: 0.0, displacement: self.displacement };
@@ -76,7 +78,7 @@ impl Contact {
             visit(0.0, self);
         }
         let unit = self.force_unit();
-        let largest = self.friction * self.normal_force_on(path, 0.0).max(self.normal_force_on(path, 1.0));
+        let largest = self.friction * path.normal_force(self, 0.0).max(path.normal_force(self, 1.0));
         let relative = if largest > 0.0 { unit / largest } else { 0.0 };
         let (mut done, mut step, mut chords) = (0.0_f64, 1.0_f64, 0);
         let mut traces: Vec<Trace> = Vec::new();
@@ -129,11 +131,11 @@ impl Contact {
     }
 
     /// Where slip begins or ends on a stretch, unless that is at an end of it: W - d or W + d has an extremum there.
-    fn turn(&self, path: &CurvedMove, (done, next): (f64, f64), panel: &PathPanel) -> Option<f64> {
+    fn turn(&self, path: &dyn CurvedPath, (done, next): (f64, f64), panel: &PathPanel) -> Option<f64> {
         let (sign, rises_first) = panel.turn?;
         let towards = if rises_first { -1.0 } else { 1.0 };
         let distance = |part: f64| {
-            let point = self.point_on(path, part);
+            let point = path.point(self, part);
             let rise = point.indentation - self.history.edge().level;
             towards * (self.advance_to(&point) * sign - rise).value()
         };
@@ -145,9 +147,9 @@ impl Contact {
     /// Refuses a path on which the tangential force does not stay below mu F_N, and reports where it first does not.
     pub(super) fn check_limit(&self, path: &CurvedMove) -> Result<(), Error> {
         let TangentialPath::Force { from, to } = path.tangential else { return Ok(()) };
-        let room = |part: f64| self.friction * self.normal_force_on(path, part) - between(from, to, part).abs();
+        let room = |part: f64| self.friction * path.normal_force(self, part) - between(from, to, part).abs();
         let fails = |part: f64| {
-            let limit = self.friction * self.normal_force_on(path, part);
+            let limit = self.friction * path.normal_force(self, part);
             // A contact in gross slip is at its limit to round-off, and may turn back from there.
             room(part) < -16.0 * f64::EPSILON * limit || (part >= 1.0 && to.abs() >= limit && to.abs() > 0.0)
         };
@@ -159,40 +161,52 @@ impl Contact {
             let lowest = if curved { largest([low, high], LIMIT, |part| -room(part)).0 } else { high };
             let Some(bad) = [lowest, high].into_iter().find(|&part| fails(part)) else { continue };
             let [_, bad] = turning([low, bad], fails);
-            let limit = self.friction * self.normal_force_on(path, bad);
+            let limit = self.friction * path.normal_force(self, bad);
             return Err(Error::ForceExceedsFriction { target: to, limit, part: bad });
         }
         Ok(())
     }
 
-    /// Normal force, N, at a point of the path.
-    fn normal_force_on(&self, path: &CurvedMove, part: f64) -> f64 {
-        match path.normal {
+    /// Scaled displacement from here to a point of the path, m.
+    pub(crate) fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
+        self.scaled(point.displacement) - self.history.position()
+    }
+}
+
+impl CurvedPath for CurvedMove {
+    fn normal_force(&self, contact: &Contact, part: f64) -> f64 {
+        match self.normal {
             NormalPath::Force { from, to } => between(from, to, part),
-            NormalPath::Indentation { from, to } if from == to => self.normal_force(),
-            NormalPath::Indentation { from, to } => self.normal_force_at(between(from, to, part)),
+            NormalPath::Indentation { from, to } if from == to => contact.normal_force(),
+            NormalPath::Indentation { from, to } => contact.normal_force_at(between(from, to, part)),
         }
     }
 
-    pub(crate) fn point_on(&self, path: &CurvedMove, part: f64) -> PathPoint {
-        let normal_force = self.normal_force_on(path, part);
-        let indentation = match path.normal {
+    fn point(&self, contact: &Contact, part: f64) -> PathPoint {
+        let normal_force = self.normal_force(contact, part);
+        let indentation = match self.normal {
             NormalPath::Indentation { from, to } => between(from, to, part),
-            NormalPath::Force { .. } => self.indentation_for(normal_force),
+            NormalPath::Force { .. } => contact.indentation_for(normal_force),
         };
-        let displacement = match path.tangential {
+        let displacement = match self.tangential {
             TangentialPath::Displacement { from, to } => between(from, to, part),
             TangentialPath::Force { from, to } => {
                 let target = between(from, to, part);
-                let held = self.stuck_position(path, indentation, target).map(|held| self.unscaled(held));
-                held.unwrap_or_else(|| self.displacement_for(indentation, normal_force, target))
+                let pressed = matches!(self.normal, NormalPath::Indentation { .. });
+                let held = if pressed { contact.stuck_position(indentation, target) } else { None };
+                held.map(|held| contact.unscaled(held))
+                    .unwrap_or_else(|| contact.displacement_for(indentation, normal_force, target))
             }
         };
         PathPoint { indentation, normal_force, displacement }
     }
 
-    /// Scaled displacement from here to a point of the path, m.
-    pub(crate) fn advance_to(&self, point: &PathPoint) -> DoubleDouble {
-        self.scaled(point.displacement) - self.history.position()
+    fn gain(&self, contact: &Contact, ring: &Ring, advance: f64) -> Option<(f64, f64)> {
+        match (self.tangential, self.normal) {
+            (TangentialPath::Displacement { .. }, NormalPath::Force { .. }) => Some(lever(contact, ring, advance)),
+            (TangentialPath::Force { .. }, NormalPath::Indentation { .. }) => Some(lag(contact, ring, advance)),
+            // In two forces dU/dd = (E*/G*) dF_x/dF_N, and in displacement and indentation, the path is straight.
+            _ => None,
+        }
     }
 }

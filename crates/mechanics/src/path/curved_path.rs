@@ -1,7 +1,29 @@
-//! A path straight in two quantities, of which a force makes it a curve in displacement and indentation.
+//! Paths that are curves in displacement and indentation: one straight in two quantities, of which one is a force, is
+//! followed as a [`CurvedMove`].
 
 use crate::contact::Contact;
 use crate::numerics::double_double::DoubleDouble;
+use crate::profile::Ring;
+
+/// A curve over a parameter from 0 to 1, on which the indentation rises or falls all the way.
+pub(crate) trait CurvedPath {
+    /// Normal force, N, at a part of the path.
+    fn normal_force(&self, contact: &Contact, part: f64) -> f64;
+
+    /// The point at a part of the path that a contact reaches from its present state.
+    fn point(&self, contact: &Contact, part: f64) -> PathPoint;
+
+    /// Change of the indentation with the part, m; `None` on a path straight in two quantities.
+    fn rate(&self, _part: f64) -> Option<f64> {
+        None
+    }
+
+    /// int (w - w0) dx, m^2, and its error, of a newly touched ring that does not slip while the scaled displacement
+    /// advances by `advance`, m, on a path straight in two quantities; `None` where it is straight in W and d too.
+    fn gain(&self, _contact: &Contact, _ring: &Ring, _advance: f64) -> Option<(f64, f64)> {
+        None
+    }
+}
 
 /// How the tangential target is reached: straight from one value to the other.
 #[derive(Clone, Copy, Debug)]

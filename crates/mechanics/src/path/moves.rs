@@ -5,7 +5,7 @@ use crate::contact::Contact;
 use crate::contact::state::{Move, Normal, Tangential};
 use crate::numerics::double_double::DoubleDouble;
 use crate::path::curved_move::DEFAULT_TOLERANCE;
-use crate::path::curved_path::{CurvedMove, NormalPath, PathPoint, TangentialPath};
+use crate::path::curved_path::{CurvedMove, CurvedPath, NormalPath, PathPoint, TangentialPath};
 use crate::range;
 use crate::range::error::Error;
 use crate::slip_history::limit::Coulomb;
@@ -110,7 +110,7 @@ impl Contact {
         let path = CurvedMove { tangential, normal };
         self.check_limit(&path)?;
         if path.has_constant_load() {
-            self.advance(&self.point_on(&path, 1.0));
+            self.advance(&path.point(self, 1.0));
             visit(1.0, self);
             return Ok(());
         }
