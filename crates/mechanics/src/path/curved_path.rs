@@ -58,9 +58,14 @@ pub(crate) struct PathPoint {
 }
 
 impl CurvedMove {
-    /// Whether the load stays as it is, so that one straight move leads to the end.
-    pub(super) fn has_constant_load(&self) -> bool {
-        matches!(self.normal, NormalPath::Indentation { from, to } if from == to)
+    /// Whether one straight move leads to the end: in displacement and indentation, or as the load stays as it is.
+    pub(super) fn is_straight(&self) -> bool {
+        match self.normal {
+            NormalPath::Indentation { from, to } => {
+                from == to || matches!(self.tangential, TangentialPath::Displacement { .. })
+            }
+            NormalPath::Force { .. } => false,
+        }
     }
 }
 

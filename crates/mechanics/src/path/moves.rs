@@ -93,23 +93,11 @@ impl Contact {
             return Ok(());
         }
         let normal = self.normal_path(step)?;
-        let tangential = self.tangential_path(step)?;
-        // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
-        // state.
-        let straight = step.tangential.is_none() || matches!(normal, NormalPath::Indentation { .. });
-        if straight && let TangentialPath::Displacement { to: displacement, .. } = tangential {
-            let (indentation, normal_force) = match normal {
-                NormalPath::Indentation { from, to } if from == to => (to, self.normal_force),
-                NormalPath::Indentation { to, .. } => (to, self.normal_force_at(to)),
-                NormalPath::Force { to, .. } => (self.indentation_for(to), to),
-            };
-            self.advance(&PathPoint { indentation, normal_force, displacement });
-            visit(1.0, self);
-            return Ok(());
-        }
-        let path = CurvedMove { tangential, normal };
+        let path = CurvedMove { tangential: self.tangential_path(step)?, normal };
         self.check_limit(&path)?;
-        if path.has_constant_load() {
+        // Without a tangential target the displacement stays, and every path to the new indentation ends in the same
+        // state; so does a path at a constant load.
+        if step.tangential.is_none() || path.is_straight() {
             self.advance(&path.point(self, 1.0));
             visit(1.0, self);
             return Ok(());
