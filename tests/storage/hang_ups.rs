@@ -33,6 +33,7 @@ use tokio::task::yield_now;
 use uuid::Uuid;
 
 type Stored<T = ()> = Result<T, StoreError>;
+type Past = (u64, Option<Timestamp>);
 
 /// A store that yields around each change.
 struct Yielding {
@@ -74,7 +75,7 @@ passed_on! {
         read find(id: Uuid) -> Session;
         read list(tenant: Option<Tenant>, label: Option<String>, page: Page) -> Vec<SessionSummary>;
         change rename(id: Uuid, label: LabelChange, at: u64, receipt: Option<Receipt>) -> ();
-        change append(id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> ();
+        change append_after(id: Uuid, past: Past, records: Vec<Record>, receipt: Option<Receipt>) -> ();
         read history(id: Uuid, after: u64, limit: usize) -> Vec<Record>;
         read count_moves(id: Uuid, end: u64) -> u64;
         change fork(id: Uuid, copy: Session, receipt: Option<Receipt>) -> ();

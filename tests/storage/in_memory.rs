@@ -7,7 +7,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use futures::future::join_all;
-use stickslip::store::{Page, Session, SqliteStore, Store, Tenant};
+use jiff::Timestamp;
+use stickslip::store::{Page, Record, Session, SqliteStore, Store, Tenant};
 use stickslip_wire::client::Options;
 use stickslip_wire::{ForkRequest, Move};
 use uuid::Uuid;
@@ -96,4 +97,24 @@ async fn nothing_reaches_a_disk_and_the_process_ends_at_once() {
     let (open, inherited) = (files(&process.id().to_string()), files("self"));
     assert!(open.is_subset(&inherited), "{open:?}");
     process.stop().await;
+}
+
+/// Moves share transactions, of which one that fails takes none along.
+#[tokio::test]
+async fn a_move_that_cannot_be_stored_takes_none_of_those_before_it_along() {
+    let store = SqliteStore::in_memory().unwrap();
+    let (id, moves) = (made(&store, None).await, records(0, 200));
+    for (after, step) in (0..).zip(&moves) {
+        // Beyond the times that a column has.
+        let unstorable = |sequence| Record { sequence, at: Timestamp::MAX, ..step.clone() };
+        if after % 7 == 0 {
+            assert!(store.append(id, after, vec![unstorable(after + 1)], None).await.is_err());
+        }
+        if after % 50 == 0 {
+            assert!(store.append(id, after, vec![step.clone(), unstorable(after + 2)], None).await.is_err());
+        }
+        store.append(id, after, vec![step.clone()], None).await.unwrap();
+    }
+    assert_eq!(store.history(id, 0, 1_000).await.unwrap(), moves);
+    assert_eq!(store.extent(id).await.unwrap().sequence, 200);
 }

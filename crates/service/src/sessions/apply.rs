@@ -93,11 +93,11 @@ impl Sessions {
         guard: &mut Guard,
         expected: Option<Expected>,
         is_current: &mut bool,
-    ) -> Result<(u64, Timestamp), SessionError> {
+    ) -> Result<(u64, Option<Timestamp>), SessionError> {
         let check = |live: &LoadedSession| {
             let (sequence, label) = (live.session.sequence, live.session.label.as_deref());
             expected.map_or(Ok(()), |expected| expected.check(sequence, label))?;
-            Ok((sequence, live.session.updated_at))
+            Ok((sequence, Some(live.session.updated_at)))
         };
         if !*is_current {
             if let Ok(sequence) = check(self.cached(guard).await?) {
@@ -114,7 +114,7 @@ impl Sessions {
     async fn store(
         &self,
         guard: Guard,
-        past: (u64, Timestamp),
+        past: (u64, Option<Timestamp>),
         computed: Computed,
         request: &IdempotentRequest<'_>,
         mut reservation: StorageReservation,

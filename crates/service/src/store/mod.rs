@@ -297,19 +297,19 @@ pub trait Store: JobStore {
 
     /// Appends moves to a session that is at sequence `expected`, all or none of them, and the receipt with them. The
     /// records are numbered from `expected + 1`.
-    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()>;
+    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
+        self.append_after(id, (expected, None), records, receipt).await
+    }
 
     /// The same for a session that last moved at this time, if others may change the store: they may have put back an
     /// earlier past, and moved the session on from there. [`StoreError::Stale`] if it last moved at another time.
     async fn append_after(
         &self,
         id: Uuid,
-        (expected, _): (u64, Timestamp),
+        past: (u64, Option<Timestamp>),
         records: Vec<Record>,
         receipt: Option<Receipt>,
-    ) -> Result<()> {
-        self.append(id, expected, records, receipt).await
-    }
+    ) -> Result<()>;
 
     /// At most `limit` moves of a session with sequences greater than `after`, in order and without a gap.
     ///

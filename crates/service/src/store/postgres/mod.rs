@@ -237,18 +237,13 @@ impl Store for PostgresStore {
         self.pool.rename(id, label, expected, receipt).await
     }
 
-    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
-        self.writer.write(Change::Append { id, expected, moved_at: None, records }, receipt).await
-    }
-
     async fn append_after(
         &self,
         id: Uuid,
-        (expected, moved_at): (u64, Timestamp),
+        (expected, moved_at): (u64, Option<Timestamp>),
         records: Vec<Record>,
         receipt: Option<Receipt>,
     ) -> Result<()> {
-        let moved_at = Some(moved_at);
         self.writer.write(Change::Append { id, expected, moved_at, records }, receipt).await
     }
 

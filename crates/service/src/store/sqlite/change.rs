@@ -29,11 +29,8 @@ const MARKS_AT_ONCE: i64 = 1_000;
 const RECEIPT_BYTES_AT_ONCE: i64 = 4 * 1024 * 1024;
 
 static INSERT_MOVE: LazyLock<String> = LazyLock::new(|| {
-    format!(
-        "INSERT INTO moves (contact, {MOVE_COLUMNS})
-         VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20,
-             ?21, ?22, ?23, ?24, ?25, ?26, ?27, ?28, ?29, ?30)"
-    )
+    let places = ["?"].repeat(1 + MOVE_COLUMNS.split(',').count()).join(",");
+    format!("INSERT INTO moves (contact, {MOVE_COLUMNS}) VALUES ({places})")
 });
 
 /// Numbers and sequences of contacts that have moved lately, as the transaction under way leaves them: what the writer,

@@ -4,8 +4,8 @@ use std::error::Error;
 use std::str::FromStr as _;
 
 use jiff::Timestamp;
-use rusqlite::types::{ToSql, ToSqlOutput, Type, Value, ValueRef};
-use rusqlite::{CachedStatement, Connection, OptionalExtension as _, Params, Row, params};
+use rusqlite::types::Type;
+use rusqlite::{CachedStatement, Connection, OptionalExtension as _, Params, Row};
 use uuid::Uuid;
 
 use crate::store::Record;
@@ -101,44 +101,26 @@ impl RowReader for Reader<'_, '_> {
 /// Writes a move of the contact with a number, by a statement to which nothing is bound.
 pub(super) fn insert_move(statement: &mut CachedStatement<'_>, number: i64, record: &Record) -> rusqlite::Result<()> {
     let Record { sequence, step, tolerance, state, measured, by, at } = record;
-    let values: &[&dyn ToSql] = params![
-        number,
-        to_integer(*sequence)?,
-        to_nanoseconds(*at)?,
-        step.displacement,
-        step.force,
-        step.indentation,
-        step.normal_force,
-        step.twist,
-        step.torque,
-        step.relative,
-        step.duration,
-        tolerance,
-        state.displacement.unwrap_or_default(),
-        state.force.unwrap_or_default(),
-        state.indentation,
-        state.normal_force,
-        state.contact_radius,
-        state.stick_radius,
-        state.regime.name(),
-        state.dissipated_energy,
-        state.elastic_energy,
-        to_integer(state.memory_depth as u64)?,
-        state.time,
-        state.viscous_work,
-        state.twist,
-        state.torque,
-        measured.map(|measured| measured.force),
-        measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?,
-        by.as_deref(),
-        negative_zeros(record),
-    ];
+    let mut index = 0;
     // What is not bound is NULL, and so is a third of the columns of most moves.
-    for (index, value) in (1..).zip(values) {
-        if !matches!(value.to_sql()?, ToSqlOutput::Owned(Value::Null) | ToSqlOutput::Borrowed(ValueRef::Null)) {
-            statement.raw_bind_parameter(index, value)?;
-        }
+    macro_rules! bind {
+        ($($value:expr),+) => {
+            $(index += 1;
+            if let Some(value) = $value {
+                statement.raw_bind_parameter(index, value)?;
+            })+
+        };
     }
+    bind!(Some(number), Some(to_integer(*sequence)?), Some(to_nanoseconds(*at)?));
+    bind!(step.displacement, step.force, step.indentation, step.normal_force, step.twist, step.torque);
+    bind!(Some(step.relative), step.duration, Some(*tolerance));
+    bind!(Some(state.displacement.unwrap_or_default()), Some(state.force.unwrap_or_default()));
+    bind!(Some(state.indentation), Some(state.normal_force), Some(state.contact_radius), Some(state.stick_radius));
+    bind!(Some(state.regime.name()), Some(state.dissipated_energy), Some(state.elastic_energy));
+    bind!(Some(to_integer(state.memory_depth as u64)?), state.time, state.viscous_work, state.twist, state.torque);
+    bind!(measured.map(|measured| measured.force));
+    bind!(measured.and_then(|measured| measured.at).map(to_nanoseconds).transpose()?);
+    bind!(by.as_deref(), Some(negative_zeros(record)));
     statement.raw_execute().map(drop)
 }
 

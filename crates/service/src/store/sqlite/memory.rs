@@ -47,7 +47,7 @@ impl InMemory {
         database.pragma_update(None, "temp_store", "MEMORY")?;
         file::prepare(&database)?;
         schema::migrate(&mut database, MIGRATIONS)?;
-        let mut writer = Writer::new(database, Arc::default(), changes, commits, clock)?;
+        let mut writer = Writer::new(database, Arc::default(), changes, commits, clock)?.gathering();
         // As every store, it begins by looking for moves without a contact.
         writer.background_step();
         Ok(InMemory { writer: Arc::new(Mutex::new(writer)), gate: Arc::default(), reads: Arc::new(Semaphore::new(1)) })
@@ -81,7 +81,8 @@ impl InMemory {
         if is_short {
             let _shared = self.gate.read().await;
             make(&mut self.writer.lock());
-        } else if let Err(error) = self.alone(make).await {
+        // In a box, so that a move is not as large as what waits for its turn.
+        } else if let Err(error) = Box::pin(self.alone(make)).await {
             tracing::error!(%error, "a change failed");
         }
     }

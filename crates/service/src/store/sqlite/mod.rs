@@ -258,7 +258,13 @@ impl Store for SqliteStore {
         self.change(1, [id], receipt, rename).await.map(drop)
     }
 
-    async fn append(&self, id: Uuid, expected: u64, records: Vec<Record>, receipt: Option<Receipt>) -> Result<()> {
+    async fn append_after(
+        &self,
+        id: Uuid,
+        (expected, _): (u64, Option<Timestamp>),
+        records: Vec<Record>,
+        receipt: Option<Receipt>,
+    ) -> Result<()> {
         let ((reply, outcome), weight) = (oneshot::channel(), records.len().max(1));
         let apply = Box::new(move |transaction: &mut Transaction<'_>| transaction.append(id, expected, &records));
         let touched = vec![id];

@@ -25,6 +25,11 @@ use super::{BUSY, STILL_BUSY};
 
 /// Contacts in the cache of sequences, of some 64 bytes each.
 const CACHED: usize = 131_072;
+/// Moves that share a transaction in memory.
+const GATHERED: usize = 64;
+
+const BEGIN: &str = "BEGIN IMMEDIATE";
+const COMMIT: &str = "COMMIT";
 
 pub(super) struct Writer {
     pub(super) database: Connection,
@@ -32,6 +37,8 @@ pub(super) struct Writer {
     files: Arc<OpenFiles>,
     changes: Arc<Changes>,
     cache: SequenceCache,
+    /// How many moves share the transaction that is open between changes; none does in a file.
+    gathered: Option<usize>,
     commits: Arc<Commits>,
     clock: Clock,
     /// A number that no session has had.
@@ -71,6 +78,7 @@ impl Writer {
             files,
             changes,
             cache: SequenceCache::new(CACHED),
+            gathered: None,
             commits,
             clock,
             next_number: highest + 1,
@@ -224,20 +232,37 @@ impl Writer {
         self.has_background()
     }
 
-    /// Runs a transaction to its durable commit, or rolls it back. One statement that writes is a transaction of its
-    /// own.
+    /// Has moves share transactions: where nothing waits for a disk, what a rollback needs of a page is kept once for
+    /// many of them.
+    pub(super) fn gathering(self) -> Writer {
+        Writer { gathered: Some(0), ..self }
+    }
+
+    /// Begins a transaction, or joins that of the moves before.
+    fn begin(&mut self, is_one_statement: bool) -> rusqlite::Result<()> {
+        self.files.check()?;
+        let Some(gathered) = &mut self.gathered else {
+            // One statement that writes is a transaction of its own.
+            return if is_one_statement { Ok(()) } else { run_statement(&self.database, BEGIN) };
+        };
+        *gathered = if is_one_statement { (*gathered + 1) % GATHERED } else { 0 };
+        if *gathered == 0 && !self.database.is_autocommit() {
+            run_statement(&self.database, COMMIT)?;
+        }
+        if self.database.is_autocommit() { run_statement(&self.database, BEGIN) } else { Ok(()) }
+    }
+
+    /// Runs a transaction to its durable commit, or rolls it back.
     fn transaction<T>(
         &mut self,
         is_one_statement: bool,
         work: impl FnOnce(&Connection, &mut SequenceCache) -> rusqlite::Result<T>,
     ) -> Result<T, Failure> {
-        let database = &self.database;
-        let around = |statement| if is_one_statement { Ok(()) } else { run_statement(database, statement) };
-        let begun = self.files.check().and_then(|()| around("BEGIN IMMEDIATE"));
-        let done = begun.and_then(|()| work(database, &mut self.cache));
+        let done = self.begin(is_one_statement).and_then(|()| work(&self.database, &mut self.cache));
+        let commit = || if is_one_statement { Ok(()) } else { run_statement(&self.database, COMMIT) };
         let outcome = match done {
             // Before it is acknowledged: a file that has been overwritten since is read by the next start.
-            Ok(value) => around("COMMIT")
+            Ok(value) => commit()
                 .and_then(|()| self.files.check_content())
                 .map(|()| value)
                 .map_err(|error| Failure { error, stage: Stage::Commit }),
@@ -247,8 +272,15 @@ impl Writer {
         self.record_health(outcome.as_ref().err().map(|failure| &failure.error));
         outcome.inspect_err(|_| {
             self.cache.clear();
-            // Some failures end the transaction by themselves.
-            if !self.database.is_autocommit()
+            // Some failures end the transaction by themselves; a statement that fails has changed nothing.
+            let is_ended = self.database.is_autocommit();
+            if is_one_statement && is_ended && self.gathered.is_some_and(|gathered| gathered > 0) {
+                // Only for want of memory, which ends the process everywhere else too: acknowledged moves are gone.
+                tracing::error!("the store in memory has lost moves");
+                std::process::abort();
+            }
+            if !is_one_statement
+                && !is_ended
                 && let Err(error) = run_statement(&self.database, "ROLLBACK")
             {
                 tracing::error!(%error, "a transaction could not be rolled back");
