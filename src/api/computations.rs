@@ -3,10 +3,11 @@
 
 use std::sync::Arc;
 
-use axum::extract::{FromRequestParts as _, Request, State};
+use axum::extract::{FromRequestParts as _, Request};
 use axum::http::{HeaderMap, header};
-use axum::response::Response;
-use axum::routing::post;
+use axum::response::{IntoResponse, Response};
+use axum::routing::MethodRouter;
+use futures::FutureExt as _;
 use utoipa::openapi::example::ExampleBuilder;
 use utoipa::openapi::path::{HttpMethod, Operation, OperationBuilder, PathItem, PathsBuilder};
 use utoipa::openapi::request_body::RequestBodyBuilder;
@@ -20,7 +21,7 @@ use stickslip_compute::computations::{
 };
 
 use super::extract::checked_document;
-use super::facts::{Facts, Routes};
+use super::facts::{Facts, Handler, Routes};
 use super::formats::{self, Format};
 use super::problem::Problem;
 use super::query_parameters::{GivenQuery, described_format, words};
@@ -38,8 +39,9 @@ impl Routes {
         let described = PathItem::new(HttpMethod::Post, operation(&entry, route, &schemas));
         let paths = PathsBuilder::new().path(route.path, described).build();
         let facts = if entry.takes_stored { Facts::READS_STORED } else { Facts::READS };
-        let handler = post(async move |app: State<Arc<App>>, request: Request| answer(entry, app.0, request).await);
-        self.add(facts, (schemas.all, paths, handler));
+        let handler: Handler =
+            Arc::new(move |request, app| Box::pin(answer(entry, app, request).map(IntoResponse::into_response)));
+        self.add(facts, (schemas.all, paths, MethodRouter::new()), &handler);
     }
 }
 

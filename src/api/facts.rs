@@ -1,8 +1,12 @@
 //! What is known of a route beside its handler: the role that it needs, how it may be refused, and its events. The
-//! facts stand in the router, at the route (`api/mod.rs`).
+//! facts stand in the table of routes, at the route (`api/mod.rs`).
 
 use std::sync::Arc;
 
+use axum::extract::Request;
+use axum::handler;
+use axum::response::Response;
+use futures::future::BoxFuture;
 use utoipa_axum::router::{OpenApiRouter, UtoipaMethodRouter};
 
 use super::openapi::operations;
@@ -51,24 +55,67 @@ impl Facts {
     pub const WRITES: Facts = Facts::of(Some(Role::Write), &[]);
 }
 
-/// The routes, and the facts of each method on a path.
+/// Answers a request.
+pub type Handler = Arc<dyn Fn(Request, Arc<App>) -> BoxFuture<'static, Response> + Send + Sync>;
+
+/// A function with extractors as a handler.
+pub fn handler<H, T>(function: H) -> Handler
+where
+    H: handler::Handler<T, Arc<App>, Future = BoxFuture<'static, Response>>,
+{
+    Arc::new(move |request, app| function.clone().call(request, app))
+}
+
+/// A handler with its description, for [`Routes::with`].
+macro_rules! route {
+    ($($handler:ident)::+) => {
+        (utoipa_axum::routes!($($handler)::+), $crate::api::facts::handler($($handler)::+))
+    };
+}
+pub(super) use route;
+
+/// A path, and its operations by their methods.
+pub struct Route {
+    pub path: String,
+    pub operations: Vec<(&'static str, Handler, Facts)>,
+}
+
+impl Route {
+    /// The operation of a method.
+    pub fn operation(&self, method: &str) -> Option<&(&'static str, Handler, Facts)> {
+        let method = if method == "HEAD" { "GET" } else { method };
+        self.operations.iter().find(|(known, ..)| *known == method)
+    }
+}
+
+/// The routes, and what the OpenAPI document says of them.
 pub struct Routes {
-    pub router: OpenApiRouter<Arc<App>>,
-    pub facts: Vec<(&'static str, String, Facts)>,
+    pub document: OpenApiRouter<Arc<App>>,
+    pub table: Vec<Route>,
 }
 
 impl Routes {
-    /// Adds operations with these facts.
-    pub fn add(&mut self, facts: Facts, mut routes: UtoipaMethodRouter<Arc<App>>) {
-        for (path, item) in &mut routes.1.paths {
-            self.facts.extend(operations(item).map(|(method, _)| (method, path.clone(), facts)));
+    /// Adds an operation with these facts.
+    pub fn add(&mut self, facts: Facts, mut described: UtoipaMethodRouter<Arc<App>>, handler: &Handler) {
+        for (path, item) in &mut described.1.paths {
+            for (method, _) in operations(item) {
+                self.insert(path, (method, Arc::clone(handler), facts));
+            }
         }
-        self.router = std::mem::take(&mut self.router).routes(routes);
+        self.document = std::mem::take(&mut self.document).routes(described);
     }
 
-    /// With operations with these facts.
-    pub fn with(mut self, facts: Facts, routes: UtoipaMethodRouter<Arc<App>>) -> Routes {
-        self.add(facts, routes);
+    /// Adds an operation to the table alone.
+    pub fn insert(&mut self, path: &str, operation: (&'static str, Handler, Facts)) {
+        match self.table.iter_mut().find(|route| route.path == path) {
+            Some(route) => route.operations.push(operation),
+            None => self.table.push(Route { path: path.to_owned(), operations: vec![operation] }),
+        }
+    }
+
+    /// With an operation with these facts.
+    pub fn with(mut self, facts: Facts, (described, handler): (UtoipaMethodRouter<Arc<App>>, Handler)) -> Routes {
+        self.add(facts, described, &handler);
         self
     }
 }

@@ -1,4 +1,4 @@
-//! HTTP: `router` is the table of contents; each resource has a file; [`problem`] says which error to use when.
+//! HTTP: `described` is the table of contents; each resource has a file; [`problem`] says which error to use when.
 
 mod accept;
 mod computations;
@@ -20,16 +20,13 @@ mod state;
 use std::future::Future;
 use std::sync::{Arc, LazyLock};
 
-use axum::Router;
 use axum::extract::Request;
-use axum::middleware::from_fn_with_state;
-use axum::response::Response;
+use axum::http::{Method, StatusCode, header};
+use axum::response::{IntoResponse as _, Response};
 use futures::future::BoxFuture;
 use tokio::net::TcpListener;
 use tokio::sync::watch;
-use tower::ServiceBuilder;
 use utoipa_axum::router::OpenApiRouter;
-use utoipa_axum::routes;
 
 use crate::access::Role;
 use crate::admission::UnderWay;
@@ -38,7 +35,7 @@ use crate::server::tls::Tls;
 use crate::server::{self, ConnectionLimiter, ConnectionLimits, Service};
 use stickslip_compute::computations::entries;
 
-use facts::{Facts, Routes};
+use facts::{Facts, Route, Routes, handler, route};
 use middleware::{request_log, security_headers};
 use request_context::Reception;
 use request_metrics::RequestMetrics;
@@ -74,14 +71,13 @@ pub async fn serve_within(
     let reception = Reception {
         keys: app.access.keys.clone(),
         metrics,
-        pool: app.pool.clone(),
         stops,
-        crosses_origins: !app.access.origins.is_empty(),
+        cross_origin: (!app.access.origins.is_empty()).then(|| security_headers::cross_origin(&app.access.origins)),
+        app: Arc::new(app),
     };
-    let (hosts, reception) = (app.access.hosts.clone(), Arc::new(reception));
     let service = Service {
-        hosts,
-        api: Box::new(Api { router: router(app, &reception), reception }),
+        hosts: reception.app.access.hosts.clone(),
+        api: Box::new(reception),
         body_time: limiter.limits.body,
         proxies: Arc::clone(&limiter.proxies),
         stopping,
@@ -94,31 +90,10 @@ pub async fn serve_within(
     .await;
 }
 
-/// All routes, and what is around them.
-struct Api {
-    router: Router,
-    reception: Arc<Reception>,
-}
-
-impl Answer for Api {
+impl Answer for Reception {
     fn answer(&self, arrival: Arrival, request: Request) -> BoxFuture<'_, (Response, UnderWay)> {
-        Box::pin(request_log::serve(&self.reception, &self.router, arrival, request))
+        Box::pin(request_log::serve(self, arrival, request))
     }
-}
-
-/// All routes.
-fn router(app: App, reception: &Arc<Reception>) -> Router {
-    let (api, _) = described().router.split_for_parts();
-    let origins = Arc::clone(&app.access.origins);
-    let all = api.with_state(Arc::new(app)).merge(page::routes()).fallback(meta::not_found);
-    if origins.is_empty() {
-        return all;
-    }
-    let layers = ServiceBuilder::new()
-        // Before keys are asked for: a browser asks whether it may send one.
-        .layer(security_headers::cross_origin(&origins))
-        .layer(from_fn_with_state(Arc::clone(reception), request_log::serve_across));
-    all.layer(layers)
 }
 
 /// The OpenAPI document, as `/openapi.json` serves it and `stickslip openapi` prints it.
@@ -127,69 +102,73 @@ pub fn document() -> &'static str {
     &DOCUMENT
 }
 
-/// What is known of the routes.
-static FACTS: LazyLock<Vec<(&str, String, Facts)>> = LazyLock::new(|| described().facts);
-
-/// The route of a path, by the rules of the router.
-pub fn route_of(path: &str) -> Option<&'static str> {
-    static ROUTES: LazyLock<matchit::Router<&str>> = LazyLock::new(|| {
-        let mut routes = matchit::Router::new();
-        for route in FACTS.iter().map(|(_, route, _)| route.as_str()).chain(page::ROUTES) {
-            // A route stands there once for each of its methods.
-            let _ = routes.insert(route, route);
+/// The route of a path.
+pub fn route_of(path: &str) -> Option<&'static Route> {
+    static ROUTES: LazyLock<matchit::Router<Route>> = LazyLock::new(|| {
+        let (mut routes, mut all) = (matchit::Router::new(), described());
+        page::ROUTES.iter().for_each(|path| all.insert(path, ("GET", handler(page::get), Facts::OPEN)));
+        for route in all.table {
+            routes.insert(route.path.clone(), route).expect("the routes are constants that do not overlap");
         }
         routes
     });
-    ROUTES.at(path).ok().map(|found| *found.value)
+    ROUTES.at(path).ok().map(|found| found.value)
 }
 
 /// The role that a method on a route needs, if it needs a key: the highest one, where nothing is known of it.
-pub fn need(method: &str, route: &str) -> Option<Role> {
-    let method = if method == "HEAD" { "GET" } else { method };
-    if method == "GET" && page::ROUTES.contains(&route) {
-        return None;
-    }
-    let known = FACTS.iter().find(|(known, path, _)| *known == method && path == route);
+pub fn need(method: &Method, route: Option<&Route>) -> Option<Role> {
+    let known = route.and_then(|route| route.operation(method.as_str()));
     known.map_or(Some(Role::Write), |(.., facts)| facts.role)
+}
+
+/// The reply of the handler of a request.
+pub async fn handled(app: Arc<App>, route: Option<&Route>, request: Request) -> Response {
+    let Some(route) = route else { return meta::not_found(request.uri()).into_response() };
+    if let Some((_, handler, _)) = route.operation(request.method().as_str()) {
+        return handler(request, app).await;
+    }
+    let methods: Vec<_> = route.operations.iter().map(|(method, ..)| *method).collect();
+    let allowed = methods.join(",").replace("GET", "GET,HEAD");
+    (StatusCode::METHOD_NOT_ALLOWED, [(header::ALLOW, allowed)]).into_response()
 }
 
 /// The routes that the OpenAPI document describes, with their facts.
 fn described() -> Routes {
-    let mut routes = Routes { router: OpenApiRouter::with_openapi(openapi::base()), facts: Vec::new() };
+    let mut routes = Routes { document: OpenApiRouter::with_openapi(openapi::base()), table: Vec::new() };
     entries().into_iter().for_each(|entry| routes.add_computation(entry));
     routes
-        .with(Facts::WRITES, routes!(sweep::run_sweep))
-        .with(Facts::READS, routes!(files::read_scan_file))
-        .with(Facts::READS, routes!(files::read_loop_file))
-        .with(Facts::READS, routes!(jobs::list_jobs))
-        .with(Facts::READS, routes!(jobs::get_job))
-        .with(Facts::WRITES, routes!(jobs::cancel_job))
-        .with(Facts::READS_RESULT, routes!(jobs::get_job_result))
-        .with(Facts { events: &["JobReply", "JobEndEvent"], ..Facts::READS }, routes!(jobs::watch_job))
-        .with(Facts::WRITES, routes!(contacts::create_contact))
-        .with(Facts::READS, routes!(contacts::list_contacts))
-        .with(Facts::READS, routes!(contacts::get_contact))
-        .with(Facts::WRITES, routes!(contacts::rename_contact))
-        .with(Facts::WRITES, routes!(contacts::delete_contact))
-        .with(Facts::READS, routes!(contacts::get_definition))
-        .with(Facts { optional_body: true, ..Facts::WRITES }, routes!(contacts::fork_contact))
-        .with(Facts::WRITES, routes!(moves::move_contact))
-        .with(Facts::WRITES, routes!(moves::follow_path))
-        .with(Facts::WRITES, routes!(moves::relax_contact))
-        .with(Facts::WRITES, routes!(observations::follow_bench))
-        .with(Facts::READS, routes!(observations::get_friction))
-        .with(Facts::READS, routes!(stress::get_stress))
-        .with(Facts::READS, routes!(residual::get_residual))
-        .with(Facts::READS, routes!(subsurface::compute_subsurface_stress))
-        .with(Facts::READS, routes!(cycle::get_steady_cycle))
-        .with(Facts::READS, routes!(history::get_history))
-        .with(Facts::READS, routes!(hysteresis_loop::get_loop))
-        .with(Facts::READS, routes!(cycles::get_cycles))
-        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS }, routes!(events::watch_contact))
-        .with(Facts::OPEN, routes!(meta::get_openapi))
-        .with(Facts::OPEN, routes!(meta::get_problem))
-        .with(Facts::OPEN, routes!(materials::get_materials))
-        .with(Facts::OPEN, routes!(meta::check_health))
-        .with(Facts::READY, routes!(meta::check_readiness))
-        .with(Facts::METRICS, routes!(metrics::metrics))
+        .with(Facts::WRITES, route!(sweep::run_sweep))
+        .with(Facts::READS, route!(files::read_scan_file))
+        .with(Facts::READS, route!(files::read_loop_file))
+        .with(Facts::READS, route!(jobs::list_jobs))
+        .with(Facts::READS, route!(jobs::get_job))
+        .with(Facts::WRITES, route!(jobs::cancel_job))
+        .with(Facts::READS_RESULT, route!(jobs::get_job_result))
+        .with(Facts { events: &["JobReply", "JobEndEvent"], ..Facts::READS }, route!(jobs::watch_job))
+        .with(Facts::WRITES, route!(contacts::create_contact))
+        .with(Facts::READS, route!(contacts::list_contacts))
+        .with(Facts::READS, route!(contacts::get_contact))
+        .with(Facts::WRITES, route!(contacts::rename_contact))
+        .with(Facts::WRITES, route!(contacts::delete_contact))
+        .with(Facts::READS, route!(contacts::get_definition))
+        .with(Facts { optional_body: true, ..Facts::WRITES }, route!(contacts::fork_contact))
+        .with(Facts::WRITES, route!(moves::move_contact))
+        .with(Facts::WRITES, route!(moves::follow_path))
+        .with(Facts::WRITES, route!(moves::relax_contact))
+        .with(Facts::WRITES, route!(observations::follow_bench))
+        .with(Facts::READS, route!(observations::get_friction))
+        .with(Facts::READS, route!(stress::get_stress))
+        .with(Facts::READS, route!(residual::get_residual))
+        .with(Facts::READS, route!(subsurface::compute_subsurface_stress))
+        .with(Facts::READS, route!(cycle::get_steady_cycle))
+        .with(Facts::READS, route!(history::get_history))
+        .with(Facts::READS, route!(hysteresis_loop::get_loop))
+        .with(Facts::READS, route!(cycles::get_cycles))
+        .with(Facts { events: &["StateEvent", "EndEvent"], ..Facts::READS }, route!(events::watch_contact))
+        .with(Facts::OPEN, route!(meta::get_openapi))
+        .with(Facts::OPEN, route!(meta::get_problem))
+        .with(Facts::OPEN, route!(materials::get_materials))
+        .with(Facts::OPEN, route!(meta::check_health))
+        .with(Facts::READY, route!(meta::check_readiness))
+        .with(Facts::METRICS, route!(metrics::metrics))
 }

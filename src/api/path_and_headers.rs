@@ -3,9 +3,10 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use axum::extract::{FromRequestParts, Path};
+use axum::extract::FromRequestParts;
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, header};
+use percent_encoding::percent_decode_str;
 use utoipa::IntoParams;
 use uuid::Uuid;
 
@@ -100,14 +101,13 @@ async fn identified(parts: &mut Parts, app: &Arc<App>, kind: Code, noun: &str) -
         let shown: String = id.chars().take(40).collect();
         Problem::new(kind, format!("the {noun} {shown} was not found"))
     };
-    let plain = parts.uri.path().split('/').nth(2).and_then(|id| Uuid::parse_str(id).ok());
-    let id = match plain {
-        Some(id) => id,
-        None => {
-            // Percent signs may not decode.
-            let path = Path::<String>::from_request_parts(parts, app).await;
-            let Path(id) = path.map_err(|_| missing("of this name"))?;
-            Uuid::parse_str(&id).map_err(|_| missing(&id))?
+    let named = parts.uri.path().split('/').nth(2).unwrap_or_default();
+    let id = match Uuid::parse_str(named) {
+        Ok(id) => id,
+        // Percent signs may not decode.
+        Err(_) => {
+            let decoded = percent_decode_str(named).decode_utf8().map_err(|_| missing("of this name"))?;
+            Uuid::parse_str(&decoded).map_err(|_| missing(&decoded))?
         }
     };
     let Ok(TenantApp(app)) = TenantApp::from_request_parts(parts, app).await;

@@ -8,8 +8,10 @@ use axum::extract::{FromRequestParts, Request};
 use axum::http::request::Parts;
 use axum::http::{HeaderMap, HeaderName, HeaderValue, Method};
 use tokio::sync::watch;
+use tower_http::cors::CorsLayer;
 use uuid::Uuid;
 
+use super::facts::Route;
 use super::middleware::access_control;
 use super::problem::Problem;
 use super::request_limits::REQUEST_ID_LENGTH;
@@ -17,6 +19,7 @@ use super::request_metrics::{EndpointMeters, RequestMetrics};
 use super::state::App;
 use crate::access::{Holder, Keys};
 use crate::admission::{Admission, Client, Deadline, Pool, PoolError, Quota, UnderWay};
+use crate::api;
 use crate::server::connections::{Arrival, Refusal};
 use stickslip_compute::Nanoseconds;
 
@@ -32,12 +35,12 @@ pub struct Reception {
     pub keys: Option<watch::Receiver<Arc<Keys>>>,
     /// The meters of all endpoints.
     pub metrics: Arc<RequestMetrics>,
-    /// Where requests get what they need.
-    pub pool: Pool,
     /// Whether requests that are not done are refused.
     pub stops: watch::Receiver<bool>,
-    /// Whether pages of other origins may call.
-    pub crosses_origins: bool,
+    /// What answers pages of other origins, if any may call.
+    pub cross_origin: Option<CorsLayer>,
+    /// What handlers share.
+    pub app: Arc<App>,
 }
 
 /// Who asks, what was admitted, and what counts it.
@@ -69,13 +72,13 @@ impl RequestContext {
         reception: &Reception,
         arrival: Arrival,
         request: &Request,
-        route: Option<&str>,
+        route: Option<&Route>,
     ) -> (Arc<RequestContext>, UnderWay) {
         let (method, headers) = (request.method(), request.headers());
         let Arrival { address, body_time, refusal, spare } = arrival;
         let always = ALWAYS_ANSWERED.contains(&request.uri().path());
         let known = match &reception.keys {
-            Some(keys) => access_control::identify(&keys.borrow(), headers, method, route.unwrap_or_default()),
+            Some(keys) => access_control::identify(&keys.borrow(), headers, api::need(method, route)),
             None => Ok(None),
         };
         let (holder, unknown) = match known {
@@ -92,23 +95,23 @@ impl RequestContext {
         }
         refusal = refusal.or(unknown);
         let counts = refusal.is_none() && !always && (reception.keys.is_none() || holder.is_some());
-        let share = counts.then(|| reception.pool.share_for(Quota::Requests, client.clone())).transpose();
+        let share = counts.then(|| reception.app.pool.share_for(Quota::Requests, client.clone())).transpose();
         let share = share.unwrap_or_else(|exceeded| {
             refusal = Some(exceeded.into());
             None
         });
-        let under_way = Admission::begin(&reception.pool, client, share);
+        let under_way = Admission::begin(&reception.app.pool, client, share);
         let context = RequestContext {
             id: request_id(headers),
             address,
             holder,
-            meters: reception.metrics.of_request(route, method),
+            meters: reception.metrics.of_request(route.map(|route| &*route.path), method),
             metrics: Arc::clone(&reception.metrics),
             body_time,
             admission: Arc::clone(under_way.admission()),
             refusal,
             waits_at_door: !always && !matches!(*method, Method::POST | Method::PATCH | Method::PUT),
-            pool: reception.pool.clone(),
+            pool: reception.app.pool.clone(),
         };
         (Arc::new(context), under_way)
     }

@@ -3,29 +3,23 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use axum::http::{HeaderMap, Method, header};
+use axum::http::{HeaderMap, header};
 use jiff::Timestamp;
 use tokio::sync::watch;
 use tokio::time::sleep;
 
-use crate::access::{Holder, Keys};
-use crate::api;
+use crate::access::{Holder, Keys, Role};
 use crate::api::problem::{Code, Problem};
 
 /// How long a wait for the end of a key lasts at most, so that any end can be waited for.
 const LONGEST_WAIT: Duration = Duration::from_secs(24 * 60 * 60);
 
-/// The holder of the key of a request, if its route needs one.
+/// The holder of the key of a request, if it needs one with this role.
 ///
 /// # Errors
 /// A [`Problem`] if the key is not known, has ended, or does not have the required role.
-pub fn identify(
-    known: &Keys,
-    headers: &HeaderMap,
-    method: &Method,
-    route: &str,
-) -> Result<Option<Arc<Holder>>, Problem> {
-    let Some(role) = api::need(method.as_str(), route) else { return Ok(None) };
+pub fn identify(known: &Keys, headers: &HeaderMap, needed: Option<Role>) -> Result<Option<Arc<Holder>>, Problem> {
+    let Some(role) = needed else { return Ok(None) };
     let holder = presented(headers).and_then(|key| known.holder(key));
     let Some(holder) = holder.filter(|holder| !holder.has_expired()) else {
         let detail = match holder {

@@ -1,22 +1,21 @@
 //! Around every request: one line in the log, one count, one span, and the document of a problem. The line of a change
 //! says who made it.
 
+use std::convert::Infallible;
 use std::future::ready;
 use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 use std::time::Instant;
 
-use axum::Router;
 use axum::body::{Body, BodyDataStream, Bytes};
-use axum::extract::{Request, State};
+use axum::extract::Request;
 use axum::http::{HeaderName, HeaderValue, Method, StatusCode, header};
-use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Response};
 use futures::stream::{self, PollNext};
 use futures::{FutureExt as _, Stream, StreamExt as _};
 use http_body::Body as _;
 use stickslip_wire::{EndEvent, EndReason, ProblemDocument};
-use tower_service::Service as _;
+use tower::{Layer as _, ServiceExt as _, service_fn};
 use tracing::field::{Empty, display};
 use tracing::{Instrument as _, Span, info_span};
 use uuid::Uuid;
@@ -64,17 +63,14 @@ struct Outcome {
 }
 
 /// Serves a request, from its head to the head of its reply: makes its context, has it admitted and answered, and adds
-/// what is common to every reply. A function around the router: each layer puts the request and its answer into boxes.
-pub async fn serve(
-    reception: &Reception,
-    router: &Router,
-    arrival: Arrival,
-    mut request: Request,
-) -> (Response, UnderWay) {
+/// what is common to every reply. A function around the handlers: a layer would put the request and its answer into
+/// boxes.
+pub async fn serve(reception: &Reception, arrival: Arrival, mut request: Request) -> (Response, UnderWay) {
     let start = Instant::now();
-    // The route rather than the path: it holds no identifier, and cannot be made up by clients.
-    let route = api::route_of(request.uri().path());
-    let (context, under_way) = RequestContext::of(reception, arrival, &request, route);
+    let found = api::route_of(request.uri().path());
+    // For the log: it holds no identifier, and cannot be made up by clients.
+    let route = found.map(|route| &*route.path);
+    let (context, under_way) = RequestContext::of(reception, arrival, &request, found);
     let _in_flight = Counted::by(&context.meters.in_flight);
     let method = request.method().clone();
     let part_of = request.headers().get(TRACEPARENT);
@@ -94,12 +90,17 @@ pub async fn serve(
     request.extensions_mut().insert(Arc::clone(&context));
     let mut stops = reception.stops.clone();
     if method == Method::HEAD {
-        // As the router would: but its body is taken away at the end, when all headers say what it would be.
+        // Its body is taken away at the end, when all headers say what it would be.
         *request.method_mut() = Method::GET;
     }
+    let answer =
+        |request: Request| admitted(reception, &context, api::handled(Arc::clone(&reception.app), found, request));
     let answer = async {
-        let answer = router.clone().call(request).map(|Ok(reply)| reply);
-        if reception.crosses_origins { answer.await } else { admitted(reception, &context, answer).await }
+        let Some(origins) = &reception.cross_origin else { return answer(request).await };
+        // A preflight request is answered before keys are asked for: a browser asks whether it may send one.
+        let answer = origins.layer(service_fn(|request: Request| answer(request).map(Ok::<_, Infallible>)));
+        let Ok(answered) = answer.oneshot(request).await;
+        answered
     };
     let answer = AssertUnwindSafe(answer.instrument(guard.span.clone())).catch_unwind();
     let mut response = tokio::select! {
@@ -117,7 +118,7 @@ pub async fn serve(
     let mut outcome = Outcome { status: response.status().as_u16(), code: None, cause: None };
     if let Some(problem) = problem {
         (outcome.code, outcome.cause) = (Some(problem.code().as_str()), problem.cause().map(str::to_owned));
-        let changes = api::need(method.as_str(), route.unwrap_or_default()) == Some(Role::Write);
+        let changes = api::need(&method, found) == Some(Role::Write);
         let document = problem.document(context.id.to_str().unwrap_or_default(), changes);
         outcome.status = document.status;
         response = with_document(response, document);
@@ -139,7 +140,7 @@ pub async fn serve(
         // Shrinking is never refused.
         let _ = context.reserve(kept).await;
     }
-    response = compression::compress(response, accepted, &reception.pool, &context.admission).await;
+    response = compression::compress(response, accepted, &reception.app.pool, &context.admission).await;
     if method == Method::HEAD {
         if let Some(length) = response.body().size_hint().exact() {
             response.headers_mut().insert(header::CONTENT_LENGTH, length.into());
@@ -147,14 +148,6 @@ pub async fn serve(
         *response.body_mut() = Body::empty();
     }
     (response, under_way)
-}
-
-/// Serves a request within pages of other origins, whose preflight requests have been answered before.
-pub async fn serve_across(State(reception): State<Arc<Reception>>, request: Request, next: Next) -> Response {
-    let Some(context) = request.extensions().get::<Arc<RequestContext>>().cloned() else {
-        return Problem::internal("a request came without its context").into_response();
-    };
-    admitted(&reception, &context, next.run(request)).await
 }
 
 /// Serves a request that is not refused, once it has its permit; one with a body gets that when the body has arrived.
@@ -165,7 +158,7 @@ async fn admitted(reception: &Reception, context: &RequestContext, answer: impl 
     }
     let admission = &context.admission;
     if context.waits_at_door
-        && let Err(refused) = admission.admit(&reception.pool).await
+        && let Err(refused) = admission.admit(&reception.app.pool).await
     {
         return Problem::from(refused).into_response();
     }

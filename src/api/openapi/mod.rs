@@ -14,12 +14,13 @@ pub use base::base;
 pub use operation::operations;
 
 /// The text of the document with these routes.
-pub fn text(Routes { router, facts }: Routes) -> String {
-    let mut document = router.into_openapi();
-    for (method, path, facts) in &facts {
-        let of_path = document.paths.paths.get_mut(path).into_iter().flat_map(operations);
-        for (_, operation) in of_path.filter(|(of, _)| of == method) {
-            operation::complete(method, path, operation, facts);
+pub fn text(Routes { document, table }: Routes) -> String {
+    let mut document = document.into_openapi();
+    for route in &table {
+        for (method, operation) in document.paths.paths.get_mut(&route.path).into_iter().flat_map(operations) {
+            if let Some((.., facts)) = route.operation(method) {
+                operation::complete(method, &route.path, operation, facts);
+            }
         }
     }
     operation::link(&mut document);

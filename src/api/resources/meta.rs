@@ -5,7 +5,7 @@ use std::any::Any;
 use std::sync::Arc;
 
 use axum::Json;
-use axum::extract::{Path, State};
+use axum::extract::State;
 use axum::http::Uri;
 use axum::response::IntoResponse;
 use serde_json::{Value, json};
@@ -64,14 +64,13 @@ pub async fn get_openapi() -> Response {
     responses((status = 200, description = "The title and the status of the problem", body = serde_json::Value,
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
-pub async fn get_problem(Path(code): Path<String>, uri: Uri) -> Result<Json<Value>, Problem> {
-    match Code::parse(&code) {
-        Some(kind) => Ok(Json(json!({"code": code, "title": kind.title(), "status": kind.status()}))),
-        None => Err(not_found(uri).await),
-    }
+pub async fn get_problem(uri: Uri) -> Result<Json<Value>, Problem> {
+    let code = uri.path().rsplit('/').next().unwrap_or_default();
+    let kind = Code::parse(code).ok_or_else(|| not_found(&uri))?;
+    Ok(Json(json!({"code": code, "title": kind.title(), "status": kind.status()})))
 }
 
-pub async fn not_found(uri: Uri) -> Problem {
+pub fn not_found(uri: &Uri) -> Problem {
     let path: String = uri.path().chars().take(100).collect();
     Problem::new(Code::NotFound, format!("the path {path} was not found; /docs lists the paths"))
 }

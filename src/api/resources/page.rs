@@ -4,12 +4,10 @@
 use std::io::Read as _;
 use std::sync::{LazyLock, OnceLock};
 
-use axum::Router;
-use axum::extract::Path;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::response::{IntoResponse as _, Redirect, Response};
-use axum::routing::get;
 use flate2::read::GzDecoder;
+use percent_encoding::percent_decode_str;
 
 use super::meta;
 use crate::api::accept::admission;
@@ -40,27 +38,20 @@ static ASSETS: LazyLock<Vec<Asset>> = LazyLock::new(|| Vec::from(include!(concat
 static DOCUMENTATION: LazyLock<Vec<Asset>> =
     LazyLock::new(|| Vec::from(include!(concat!(env!("OUT_DIR"), "/docs.in"))));
 
-pub fn routes() -> Router {
-    let [folder, index_of_docs, files_of_docs] = DOCS;
-    Router::new()
-        .route(PAGE, get(index))
-        .route(FILES, get(async |Path(name): Path<String>, headers, uri| file(&ASSETS, &name, headers, uri).await))
-        .route(folder, get(async || Redirect::to(index_of_docs)))
-        .route(index_of_docs, get(async |headers, uri| file(&DOCUMENTATION, "index.html", headers, uri).await))
-        .route(
-            files_of_docs,
-            get(async |Path(name): Path<String>, headers, uri| file(&DOCUMENTATION, &name, headers, uri).await),
-        )
-}
-
-async fn index(headers: HeaderMap, uri: Uri) -> Response {
-    file(&ASSETS, "index.html", headers, uri).await
-}
-
-async fn file(assets: &'static [Asset], name: &str, headers: HeaderMap, uri: Uri) -> Response {
+/// The file that a path of these names.
+pub async fn get(uri: Uri, headers: HeaderMap) -> Response {
+    let path = uri.path();
+    let (assets, name) = match (path.strip_prefix("/page/"), path.strip_prefix("/docs")) {
+        (Some(name), _) => (&ASSETS, name),
+        (_, Some("")) => return Redirect::to(DOCS[1]).into_response(),
+        (_, Some("/")) => (&DOCUMENTATION, "index.html"),
+        (_, Some(name)) => (&DOCUMENTATION, name.trim_start_matches('/')),
+        (None, None) => (&ASSETS, "index.html"),
+    };
+    let name = percent_decode_str(name).decode_utf8_lossy();
     match assets.iter().find(|asset| asset.name == name) {
         Some(asset) => asset.answer(&headers),
-        None => meta::not_found(uri).await.into_response(),
+        None => meta::not_found(&uri).into_response(),
     }
 }
 
