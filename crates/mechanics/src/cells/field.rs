@@ -27,11 +27,12 @@ const LANES: usize = 4;
 /// For fewer radii than this, larger clusters than the next are summed half by half.
 pub(crate) const MANY: usize = 64;
 
-/// The moments of a cluster of so many cells are made of what is in it at once, not half by half.
-const FEW_CELLS: usize = 2;
+/// The moments of a cluster of so many cells are made of what is in it at once, not half by half: few radii are far
+/// from its halves and not from it.
+const FEW_CELLS: usize = 8;
 
-/// The parts of a cell up to which each is summed on its own.
-const CROWD: usize = 8;
+/// So many parts of a cell are summed one by one.
+const FEW_PARTS: usize = 2;
 
 /// A stretch within the cell of this index, and its weight.
 type Part = (usize, Span, f64);
@@ -45,7 +46,7 @@ pub(crate) struct WeightedCells<'a> {
     parts: Vec<Part>,
     /// The clusters that have moments of their own, by their numbers.
     own: Vec<(usize, Multipole)>,
-    /// The cells that many rings cut, by their numbers.
+    /// The parts of cells that several rings cut, for many radii, by the numbers of the cells.
     crowds: Vec<(usize, ClusterTree<Multipole>)>,
     /// What rings cross at a vertical edge.
     rim: Option<Rim>,
@@ -126,25 +127,25 @@ impl WeightedCells<'_> {
         &self.parts[first..first + count]
     }
 
-    /// Clusters of the parts of each cell that many rings cut, over x^2 from their own inner ends on, so that rings
+    /// The clusters of the parts of a cell.
+    fn crowd(&self, cell: usize) -> Option<&ClusterTree<Multipole>> {
+        let place = self.crowds.binary_search_by_key(&cell, |crowd| crowd.0);
+        place.ok().map(|place| &self.crowds[place].1)
+    }
+
+    /// Clusters of the parts of each cell that several rings cut, over x^2 from their own inner ends on, so that rings
     /// within a millionth of the edge keep their digits.
     fn crowds(&self) -> Vec<(usize, ClusterTree<Multipole>)> {
-        let cut = self.parts.chunk_by(|one, next| one.0 == next.0).filter(|parts| parts.len() > CROWD);
+        let cut = self.parts.chunk_by(|one, next| one.0 == next.0).filter(|parts| parts.len() > FEW_PARTS);
         let clusters = |parts: &[Part]| {
             let cell = &self.cells.cells[parts[0].0];
-            let tree = ClusterTree::new(parts.len(), CROWD / 2, |items, halves: Option<[&Multipole; 2]>| {
+            let tree = ClusterTree::new(parts.len(), 1, |items, halves: Option<[&Multipole; 2]>| {
                 let width = parts[items.clone()].iter().map(|(_, span, _)| span.gap).sum();
-                let (mut sources, mut start) = (Multipole::empty(parts[items.start].1.inner, width), 0.0);
-                if let Some(halves) = halves {
-                    for half in halves {
-                        sources.add_beyond(start, half, 1.0);
-                        start += half.width;
-                    }
-                } else {
-                    for (_, span, weight) in &parts[items.clone()] {
-                        cell.add_sources(&mut sources, start, cell.part(span), *weight);
-                        start += span.gap;
-                    }
+                let (_, span, weight) = &parts[items.start];
+                let mut sources = Multipole::empty(span.inner, width);
+                match halves {
+                    Some(halves) => halves.into_iter().for_each(|half| sources.add(half, 1.0)),
+                    None => cell.add_sources(&mut sources, 0.0, cell.part(span), *weight),
                 }
                 sources
             });
@@ -160,9 +161,10 @@ impl WeightedCells<'_> {
         if self.weight(&cluster.items).is_some() {
             return;
         }
-        let is_small = cluster.items.len() <= FEW_CELLS;
         // Wider than it is far from the centre, it is far from no radius, and neither is a cluster that holds it.
-        let wanted = (all || is_small) && Kernel::Root.is_far(&cluster.sources, DoubleDouble::ZERO);
+        let is_far = Kernel::Root.is_far(&cluster.sources, DoubleDouble::ZERO);
+        let is_small = is_far && cluster.items.len() <= FEW_CELLS;
+        let wanted = is_far && (all || is_small);
         let (origin, width) = (cluster.sources.origin, cluster.sources.width);
         if let Some(halves) = cluster.halves.filter(|_| !is_small) {
             halves.into_iter().for_each(|half| self.gather(half, all));
@@ -195,6 +197,9 @@ impl WeightedCells<'_> {
     /// is left by them.
     fn add_parts(&self, cluster: &Cluster<Multipole>, sources: &mut Multipole) {
         let index = cluster.items.start;
+        if let Some(root) = self.crowd(index).and_then(|crowd| Some(&crowd.cluster(crowd.root()?).sources)) {
+            return sources.add(root, 1.0);
+        }
         let (cell, parts) = (&self.cells.cells[index], self.parts_of(index));
         let covered = parts.windows(2).all(|pair| pair[0].1.outer == pair[1].1.inner)
             && parts.first().is_some_and(|(_, span, _)| span.inner <= cell.square)
@@ -265,8 +270,8 @@ impl WeightedCells<'_> {
             Some(whole) => whole,
             None => self.parts_of(index),
         };
-        let crowd = self.crowds.iter().find(|crowd| whole.is_none() && crowd.0 == index && !kernel.is_angle());
-        match crowd.and_then(|(_, tree)| Some((tree, tree.root()?))) {
+        let crowd = if whole.is_none() && !kernel.is_angle() { self.crowd(index) } else { None };
+        match crowd.and_then(|tree| Some((tree, tree.root()?))) {
             Some((tree, root)) => self.visit_crowd(tree, root, parts, kernel, radii, sums),
             None => self.add_parts_near(parts, kernel, radii, sums),
         }

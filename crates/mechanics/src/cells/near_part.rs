@@ -48,7 +48,7 @@ impl NearPart<'_> {
     pub(super) fn kernels<const N: usize, const SLOPE: bool>(&self, squares: [DoubleDouble; N]) -> [f64; N] {
         let (mut kappa, mut below, mut above) = ([0.0; N], [0.0; N], [0.0; N]);
         for lane in 0..N {
-            kappa[lane] = (squares[lane] - self.cell.square).value();
+            kappa[lane] = squares[lane].less(self.cell.square);
             (below[lane], above[lane]) = self.span.excess(squares[lane]);
         }
         let Part { low, high, .. } = self.part;

@@ -44,10 +44,8 @@ impl Span {
 
     /// Both squares less `square`. The two sides agree to round-off, and the difference is small where it ought to be.
     pub(crate) fn excess(&self, square: DoubleDouble) -> (f64, f64) {
-        let inner = self.inner - square;
-        let outer =
-            if inner.value() > -0.5 * self.gap { inner + DoubleDouble::from(self.gap) } else { self.outer - square };
-        (inner.value(), outer.value())
+        let inner = self.inner.less(square);
+        (inner, if inner > -0.5 * self.gap { inner + self.gap } else { self.outer.less(square) })
     }
 
     /// The part inside the radius whose square is given.

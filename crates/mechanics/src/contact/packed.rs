@@ -31,7 +31,7 @@ use crate::viscoelastic::{SPRINGS, Viscoelastic};
 /// whatever contact: bytes of another version are not read, so that states packed by an older engine are recomputed
 /// from their moves and agree with those that never were packed. `tests/physics/packed.rs` compares a digest of results
 /// for it.
-pub const ENGINE: u16 = 21;
+pub const ENGINE: u16 = 22;
 
 /// The version of the arrangement of the bytes.
 const LAYOUT: u16 = 4;

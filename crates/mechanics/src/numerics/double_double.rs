@@ -74,6 +74,13 @@ impl DoubleDouble {
         self.hi
     }
 
+    /// The nearest `f64` of the difference, or its neighbour: without what rounding lost of a difference that is not
+    /// small, so that lanes of it run side by side.
+    #[must_use]
+    pub(crate) fn less(self, other: DoubleDouble) -> f64 {
+        (self.hi - other.hi) + (self.lo - other.lo)
+    }
+
     /// The leading and the trailing part.
     #[must_use]
     pub fn parts(self) -> (f64, f64) {

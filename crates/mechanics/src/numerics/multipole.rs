@@ -86,7 +86,7 @@ impl Multipole {
 
     /// How far a place lies beyond the origin.
     pub(crate) fn place(&self, x: DoubleDouble) -> f64 {
-        (x - self.origin).value()
+        x.less(self.origin)
     }
 
     /// Adds sources of these weights, this far above the origin.
@@ -96,17 +96,13 @@ impl Multipole {
     }
 
     /// Adds the sources in a part of the interval, times a factor.
-    pub(crate) fn add(&mut self, part: &Multipole, factor: f64) {
-        self.add_beyond(self.place(part.origin), part, factor);
-    }
-
-    /// Adds the sources of a part that begins at `start` above the origin, times a factor.
     ///
     /// Row k of the recurrence holds the sums of w P_k(eta) P_j(xi), eta and xi the places in the whole and in the
     /// part. It begins with the moments of the part, its first element is the moment of the whole, and a step takes it
     /// to the next k by Bonnet's recurrence in both. An unknown column beyond the last order is taken as zero, and is
     /// one column nearer after each step.
-    pub(crate) fn add_beyond(&mut self, start: f64, part: &Multipole, factor: f64) {
+    pub(crate) fn add(&mut self, part: &Multipole, factor: f64) {
+        let start = self.place(part.origin);
         let half = (0.5 * self.width).max(f64::MIN_POSITIVE);
         // An interval of a few units in the last place has no centre of its own.
         let scale = (0.5 * part.width / half).min(1.0);
