@@ -5,7 +5,7 @@ use std::cell::Cell;
 
 use crate::cells::call_count::{Calls, during, so_far};
 use crate::cycle::{Drive, best_load};
-use crate::profile::{PowerLaw, RoundedPunch};
+use crate::profile::{Asperities, PowerLaw, RoundedPunch};
 use crate::protocol::{equal_peaks, falling_amplitude};
 use crate::{Contact, Elasticity, Error, Move, Normal, Preload, Profile, Setup, Sphere, Tangential};
 
@@ -93,6 +93,46 @@ fn each_field_costs_its_own_calls_and_no_others() {
             assert_eq!((calls.kernel_slope, calls.moments, calls.states), (0, 0, 0), "{field}");
         }
     }
+}
+
+#[test]
+fn stresses_of_a_power_of_any_exponent_are_sums_of_few_near_parts() {
+    let mut contact = Contact::new(Setup {
+        profile: Profile::PowerLaw(PowerLaw::new(2.7, 1e4).unwrap()),
+        elasticity: Elasticity::effective(1.2e11, 9.6e10).unwrap(),
+        friction: 0.3,
+        preload: Preload::Indentation(1e-6),
+    })
+    .unwrap();
+    let path = falling_amplitude(20, contact.gross_slip_displacement());
+    follow(&mut contact, path);
+    let radii: Vec<f64> = (0..200).map(|index| contact.contact_radius() * f64::from(index) / 200.0).collect();
+    let (calls, _) = during(|| contact.shears(&radii));
+    // Four radii at once: some four of the 27 parts of cells, in place of eleven.
+    assert!(calls.kernel > 0 && calls.kernel <= 5 * radii.len() / 4, "{calls:?}");
+}
+
+#[test]
+fn loads_over_nine_decades_on_asperities_sum_near_ones_once_for_a_radius_and_its_slope() {
+    let gaps: Vec<f64> = (0..1000).map(|index| 1e-9 * f64::from(index)).collect();
+    let mut contact = Contact::new(Setup {
+        profile: Profile::Asperities(Asperities::new(&[1e-3], &gaps).unwrap()),
+        elasticity: Elasticity::effective(1.2e11, 9.6e10).unwrap(),
+        friction: 0.3,
+        preload: Preload::NormalForce(1e3),
+    })
+    .unwrap();
+    let (mut chords, load) = (0, contact.normal_force());
+    let (calls, ()) = during(|| {
+        for (share, target) in [(1e-9, 1e-7), (1.0, -1e-7)] {
+            let (normal, tangential) =
+                (Some(Normal::NormalForce(share * load)), Some(Tangential::Displacement(target)));
+            let step = Move { normal, tangential, ..Move::default() };
+            contact.apply_visited(&step, 1e-10, &|| true, &mut |_, _| chords += 1).unwrap();
+        }
+    });
+    assert!(chords > 1000, "{chords}");
+    assert!(calls.asperities <= 60 * chords, "{calls:?} for {chords} chords");
 }
 
 #[test]

@@ -17,13 +17,14 @@ pub(crate) struct Calls {
     pub(crate) states: usize,
     /// Copies of a slip history.
     pub(crate) copies: usize,
+    /// Functions of a place below the surface.
+    pub(crate) place_kernels: usize,
+    /// Sums over the asperities near a level.
+    pub(crate) asperities: usize,
 }
 
-/// No calls yet.
-const NONE: Calls = Calls { moments: 0, kernel: 0, kernel_slope: 0, displacement_integral: 0, states: 0, copies: 0 };
-
 thread_local! {
-    static CALLS: Cell<Calls> = const { Cell::new(NONE) };
+    static CALLS: Cell<Calls> = Cell::new(Calls::default());
 }
 
 /// A member of a struct whose copies are counted.
@@ -46,7 +47,7 @@ pub(crate) fn add(which: impl Fn(&mut Calls) -> &mut usize) {
 
 /// The calls that `work` makes.
 pub(crate) fn during<T>(work: impl FnOnce() -> T) -> (Calls, T) {
-    CALLS.set(NONE);
+    CALLS.set(Calls::default());
     let result = work();
     (CALLS.get(), result)
 }

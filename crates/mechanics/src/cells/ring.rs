@@ -73,6 +73,13 @@ impl StressRadius {
     }
 }
 
+impl Point {
+    /// A level with its radius, m, and the square of that.
+    pub(crate) fn new(level: DoubleDouble, radius: f64) -> Point {
+        Point { level, radius, square: DoubleDouble::square_of(radius) }
+    }
+}
+
 impl Ring {
     /// The ring between two points of one profile.
     #[must_use]

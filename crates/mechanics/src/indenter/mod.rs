@@ -105,12 +105,12 @@ impl Indenter {
         if within < kinks.len() {
             kinks = kinks[..within].into();
         }
-        let square = match (load, kinks.first()) {
-            (Some(load), _) => DoubleDouble::square_of(load.radius_at(DoubleDouble::ZERO)),
-            (None, Some(kink)) => kink.at.square,
-            (None, None) => end.map_or(DoubleDouble::ZERO, |end| DoubleDouble::square_of(end.radius)),
+        let level = DoubleDouble::ZERO;
+        let flat = match (load, kinks.first()) {
+            (Some(load), _) => Point::new(level, load.radius_at(level)),
+            (None, Some(kink)) => Point { level, radius: kink.at.radius, square: kink.at.square },
+            (None, None) => Point::new(level, end.map_or(0.0, |end| end.radius)),
         };
-        let flat = Point { level: DoubleDouble::ZERO, radius: square.value().sqrt(), square };
         let curve = match (profile.ball(), load) {
             (Some(ball), _) => Curve::Ball(ball),
             (None, Some(_)) => Curve::Load,
@@ -221,7 +221,7 @@ impl Indenter {
     #[must_use]
     pub fn slope(&self, radius: f64) -> f64 {
         match (self.profile.curve(), self.ball()) {
-            (Some(curve), _) => curve.rate(curve.level_of(radius).into()).recip(),
+            (Some(curve), _) => curve.radius_and_rate(curve.level_of(radius).into())[1].recip(),
             (None, Some(ball)) => 2.0 * radius / ball.curvature_radius,
             _ => self.profile.slope(radius),
         }
@@ -253,10 +253,12 @@ impl Indenter {
         if level.value() <= 0.0 {
             return Point { level, ..self.flat };
         }
-        let square = match self.profile.curve() {
-            Some(curve) => DoubleDouble::square_of(curve.radius_at(level)),
-            None => self.cells(Reach::Level(level.value())).map_or(DoubleDouble::ZERO, |cells| cells.square(level)),
-        };
+        if let Some(curve) = self.profile.curve() {
+            // The square of a radius below 1e-154 m would give it back with fewer digits.
+            return Point::new(level, curve.radius_at(level));
+        }
+        let cells = self.cells(Reach::Level(level.value()));
+        let square = cells.map_or(DoubleDouble::ZERO, |cells| cells.square(level));
         Point { level, radius: square.value().sqrt(), square }
     }
 

@@ -100,6 +100,18 @@ pub(crate) fn counted(terms: &[f64], share: f64) -> &[f64] {
     &terms[..last.map_or(0, |last| last + 1)]
 }
 
+/// The integral of a series from -1 on, times `scale`, as a series: `start` at -1.
+///
+/// int T_0 = T_1, int T_1 = (T_0 + T_2)/4, and int T_n = T_(n + 1)/(2(n + 1)) - T_(n - 1)/(2(n - 1)).
+pub(crate) fn integral(series: &[f64], scale: f64, start: f64) -> Vec<f64> {
+    let term = |order: usize| series.get(order).copied().unwrap_or(0.0);
+    let rise = |order: usize| if order == 1 { 2.0 * term(0) - term(2) } else { term(order - 1) - term(order + 1) };
+    let mut terms: Vec<f64> = (1..=series.len()).map(|order| 0.5 * scale * rise(order) / order as f64).collect();
+    let here: f64 = terms.iter().enumerate().map(|(index, term)| if index % 2 == 0 { -term } else { *term }).sum();
+    terms.insert(0, start - here);
+    terms
+}
+
 /// Adds to sums over sources, of their weights times the Chebyshev polynomials of each order, that of one at u.
 pub(crate) fn add_polynomials<const N: usize>(sums: &mut [f64; N], u: f64, weight: f64) {
     let (mut this, mut before) = (weight, weight * u);
@@ -127,6 +139,7 @@ pub(crate) fn values<const N: usize>(series: &[f64], u: [f64; N]) -> [f64; N] {
 /// The numbers of steps between nested points, both ends among them, x = cos(pi j/n) from 1 down to -1: each has the
 /// points of the one before it.
 pub(crate) const NESTED_STEPS: [usize; 4] = [4, 8, 16, 32];
+const MOST_STEPS: usize = 64;
 
 /// The weights of the values at the points of `NESTED_STEPS[level]`, one row for each of the points half a step between
 /// them.
@@ -144,9 +157,12 @@ pub(crate) fn nested_products(level: usize) -> &'static [Vec<f64>] {
     &ROWS[level]
 }
 
-/// The nested point `j` of `n`.
+/// The nested point `j` of `n`, or of the points half a step between those of the most steps as well, all the way
+/// round.
 pub(crate) fn nested_point(n: usize, j: usize) -> f64 {
-    (PI * j as f64 / n as f64).cos()
+    static POINTS: LazyLock<[f64; 2 * MOST_STEPS]> =
+        LazyLock::new(|| std::array::from_fn(|index| (PI * index as f64 / MOST_STEPS as f64).cos()));
+    POINTS[j * (MOST_STEPS / n)]
 }
 
 /// The weights of the values at the points in the polynomial at x (Salzer 1972).
@@ -194,6 +210,16 @@ mod tests {
             assert!((value - f64::exp(u)).abs() < 2e-15);
         }
         assert!(!Points::<8>::resolve(&EIGHT.series(&EIGHT.places(-1.0, 1.0).map(f64::exp))));
+    }
+
+    #[test]
+    fn the_integral_of_a_series_is_that_of_its_function() {
+        let points = &*TWENTY_FOUR;
+        let series = integral(&points.series(&points.places(-1.0, 1.0).map(f64::exp)), 3.0, 0.5);
+        for u in [-1.0, 0.3, 1.0] {
+            let [value] = values(&series, [u]);
+            assert!((value - (0.5 + 3.0 * (f64::exp(u) - f64::exp(-1.0)))).abs() < 1e-14);
+        }
     }
 
     #[test]

@@ -52,8 +52,8 @@ fn over_ring(contact: &Contact, ring: &Ring, integrand: impl Fn(f64, f64, f64) -
         return by_two_rules(|u| {
             let risen = ring.depth * u * u;
             let level = ring.inner.level + DoubleDouble::from(risen);
-            let rate = 2.0 * ring.depth * u * curve.rate(level);
-            rate * integrand(curve.radius_at(level), risen, ring.depth - risen)
+            let [radius, rate] = curve.radius_and_rate(level);
+            2.0 * ring.depth * u * rate * integrand(radius, risen, ring.depth - risen)
         });
     }
     let (inner, width) = (ring.inner.radius, ring.outer.radius - ring.inner.radius);

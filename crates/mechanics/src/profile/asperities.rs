@@ -14,6 +14,8 @@ use std::sync::{Arc, OnceLock};
 
 use super::curve_family::CurveFamily;
 use super::{Moments, Ring};
+#[cfg(test)]
+use crate::cells::call_count;
 use crate::cells::moment_tree::MomentTree;
 use crate::cells::parabola::Parabola;
 use crate::numerics::chebyshev::{self, TWENTY};
@@ -72,8 +74,9 @@ struct LevelCell {
     first_near: usize,
     /// The asperities whose gaps lie within the cell.
     items: Range<usize>,
-    /// The Chebyshev series of X' by the asperities below `first_near`.
+    /// The Chebyshev series of X' and of X by the asperities below `first_near`.
     series: Vec<f64>,
+    radii: Vec<f64>,
 }
 
 impl Asperities {
@@ -138,6 +141,12 @@ impl Set {
         };
         let whole_cells: Vec<_> = set.cells.iter().map(whole).collect();
         set.whole_cells = MomentTree::new(whole_cells.into_iter());
+        for index in 0..set.cells.len() {
+            let cell = &set.cells[index];
+            let [near] = set.sum(cell.first_near..cell.items.start, |root, gap| [root * (cell.low - gap).sqrt()]);
+            let far = set.whole_cells.run(0, index).0.width - near;
+            set.cells[index].radii = chebyshev::integral(&cell.series, 0.5 * (cell.high - cell.low), far);
+        }
         Ok(set)
     }
 
@@ -154,6 +163,8 @@ impl Set {
 
     /// The sums of terms over some asperities, of which each is a function of sqrt(R) and of the gap.
     fn sum<const N: usize>(&self, some: Range<usize>, term: impl Fn(f64, f64) -> [f64; N]) -> [f64; N] {
+        #[cfg(test)]
+        call_count::add(|calls| &mut calls.asperities);
         let mut sums = [0.0; N];
         for (root, gap) in self.roots[some.clone()].iter().zip(&self.gaps[some]) {
             for (sum, term) in sums.iter_mut().zip(term(*root, *gap)) {
@@ -187,7 +198,7 @@ impl Set {
         let mut sums = self.sum(first..self.touched(cell, outer), moments);
         if let Some(cell) = cell.filter(|cell| cell.first_near > 0) {
             let start = above(inner, cell.low);
-            let rates = cell.at(TWELVE_POINTS.map(|(at, _)| start + depth * at));
+            let rates = cell.values(&cell.series, TWELVE_POINTS.map(|(at, _)| start + depth * at));
             for (rate, (at, weight)) in rates.into_iter().zip(TWELVE_POINTS) {
                 let (mut share, left) = (weight * rate * depth, depth * (1.0 - at));
                 for sum in &mut sums {
@@ -226,19 +237,6 @@ impl Set {
         self.whole_cells.across(0..last, Moments::default(), (outside, depth))
     }
 
-    /// X'(y).
-    fn rate_at(&self, level: DoubleDouble) -> f64 {
-        let cell = self.cells.get(self.cell(level));
-        let near = cell.map_or(0, |cell| cell.first_near)..self.touched(cell, level);
-        let [far] = cell.map_or([0.0], |cell| cell.at([above(level, cell.low)]));
-        far + self.sum(near, |root, gap| [0.5 * root / above(level, gap).sqrt()])[0]
-    }
-
-    /// X and its slope.
-    fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2] {
-        [self.moments_below(level).width, self.rate_at(level)]
-    }
-
     /// int_0^y X dy, and X.
     fn load_and_radius(&self, level: DoubleDouble) -> [f64; 2] {
         let Moments { width, first, .. } = self.moments_below(level);
@@ -256,7 +254,7 @@ impl Set {
         (target, least): (f64, f64),
         known: impl Fn(&[f64; 2]) -> f64,
         first: impl Fn(&[f64; 2]) -> f64,
-        value: impl Fn(&Set, DoubleDouble) -> [f64; 2],
+        value: impl Fn(DoubleDouble) -> [f64; 2],
     ) -> f64 {
         if target <= 0.0 {
             return 0.0;
@@ -270,17 +268,17 @@ impl Set {
         let room = gaps.get(index).map_or(least, |next| next - base);
         let start = if least > base { least - base } else { room.min(least) };
         base + within([0.0, room], start.min(first(&at_gaps[before])), |step| {
-            let [here, slope] = value(self, DoubleDouble::sum(base, step));
+            let [here, slope] = value(DoubleDouble::sum(base, step));
             (here - target, slope)
         })
     }
 }
 
 impl LevelCell {
-    /// Its series at levels this far above its lower end, side by side.
-    fn at<const N: usize>(&self, offsets: [f64; N]) -> [f64; N] {
+    /// One of its series at levels this far above its lower end, side by side.
+    fn values<const N: usize>(&self, series: &[f64], offsets: [f64; N]) -> [f64; N] {
         let half = 0.5 * (self.high - self.low);
-        chebyshev::values(&self.series, offsets.map(|offset| offset / half - 1.0))
+        chebyshev::values(series, offsets.map(|offset| offset / half - 1.0))
     }
 }
 
@@ -295,7 +293,7 @@ fn cells(gaps: &[f64], roots: &[f64], keep_going: &dyn Fn() -> bool) -> Option<V
     let cell = |low: f64, high: f64| {
         let touched = |level| gaps.partition_point(|&gap| gap < level);
         let first_near = gaps.partition_point(|&gap| low - gap > high - low);
-        LevelCell { low, high, first_near, items: touched(low)..touched(high), series: Vec::new() }
+        LevelCell { low, high, first_near, items: touched(low)..touched(high), series: Vec::new(), radii: Vec::new() }
     };
     let halved = 3.0 * gaps[gaps.len() - 1];
     let ends = std::iter::successors(Some(halved), |&end| Some(1.5 * end));
@@ -356,16 +354,32 @@ fn above(level: DoubleDouble, gap: f64) -> f64 {
 
 impl CurveFamily for Arc<Set> {
     fn radius_at(&self, level: DoubleDouble) -> f64 {
-        self.moments_below(level).width
+        self.radius_and_rate(level)[0]
     }
 
-    fn rate(&self, level: DoubleDouble) -> f64 {
-        self.rate_at(level)
+    fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2] {
+        let cell = self.cells.get(self.cell(level));
+        let near = cell.map_or(0, |cell| cell.first_near)..self.touched(cell, level);
+        let [mut radius, mut rate] = self.sum(near, |root, gap| {
+            let edge = above(level, gap).sqrt();
+            [root * edge, 0.5 * root / edge]
+        });
+        if let Some(cell) = cell.filter(|cell| cell.first_near > 0) {
+            let offset = above(level, cell.low);
+            radius += cell.values(&cell.radii, [offset])[0];
+            rate += cell.values(&cell.series, [offset])[0];
+        }
+        [radius, rate]
     }
 
     fn level_of(&self, radius: f64) -> f64 {
         let least = radius / self.total;
-        self.invert((radius, least * least), |[_, radius]| *radius, |_| f64::INFINITY, Set::radius_and_rate)
+        self.invert(
+            (radius, least * least),
+            |[_, radius]| *radius,
+            |_| f64::INFINITY,
+            |level| self.radius_and_rate(level),
+        )
     }
 
     fn moments_of(&self, ring: &Ring) -> Moments {
@@ -376,6 +390,6 @@ impl CurveFamily for Arc<Set> {
         let least = (1.5 * load / self.total).cbrt();
         // The load rises at least by the radius at the gap.
         let first = |[before, radius]: &[f64; 2]| (load - before) / radius;
-        self.invert((load, least * least), |[load, _]| *load, first, Set::load_and_radius)
+        self.invert((load, least * least), |[load, _]| *load, first, |level| self.load_and_radius(level))
     }
 }

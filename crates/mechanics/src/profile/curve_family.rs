@@ -14,8 +14,8 @@ pub(crate) trait CurveFamily {
     /// X(y), m.
     fn radius_at(&self, level: DoubleDouble) -> f64;
 
-    /// X'(y) (pure number).
-    fn rate(&self, level: DoubleDouble) -> f64;
+    /// X(y), m, and X'(y) (pure number).
+    fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2];
 
     /// The level, m, from which on X is no less than `radius`, m.
     fn level_of(&self, radius: f64) -> f64;

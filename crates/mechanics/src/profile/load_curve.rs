@@ -292,12 +292,9 @@ impl CurveFamily for LoadCurve {
         self.0.radius(level)
     }
 
-    fn rate(&self, level: DoubleDouble) -> f64 {
-        let index = self.0.find(level.value());
-        if index > 0 {
-            return self.0.slope(index);
-        }
-        self.0.exponent * self.0.radius(level) / level.value()
+    fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2] {
+        let (index, radius) = (self.0.find(level.value()), self.0.radius(level));
+        [radius, if index > 0 { self.0.slope(index) } else { self.0.exponent * radius / level.value() }]
     }
 
     fn level_of(&self, radius: f64) -> f64 {
@@ -363,7 +360,7 @@ impl CurveFamily for LoadCurve {
             (load * (level.min(gap.high) - gap.low), OF_RADIUS * gap.radius)
         };
         // Where X hardly rises, a radius says little of the level.
-        let level = if error > 0.0 { (error / self.rate(level.into())).min(level) } else { 0.0 };
+        let level = if error > 0.0 { (error / self.radius_and_rate(level.into())[1]).min(level) } else { 0.0 };
         InterpolationError { load: if load > 0.0 { load } else { 0.0 }, level, kernel: 0.0 }
     }
 }

@@ -362,3 +362,29 @@ fn curved_moves_of_asperities_meet_their_tolerance() {
     let off = (rough.force() - fine.force()).abs() / (0.31 * limit);
     assert!(off < 1e-8, "{off:e}");
 }
+
+/// Below 1e-154 m the square of a radius has fewer digits than the radius, or none.
+#[test]
+fn contacts_of_any_radius_slip_as_their_load_tells() {
+    let mut random = Random(11);
+    let worst = Worst::new("the force of a contact narrower than 1e-154 m / (mu F_N)", 1e-13);
+    for _ in 0..200 {
+        let exponent = random.within(10.0, 30.0);
+        let levels: Vec<f64> = (0..8).map(|index| 2e-8 * f64::from(index)).collect();
+        let forces: Vec<f64> = levels.iter().map(|level| (level / 1e-7).powf(exponent)).collect();
+        let profile = Profile::LoadCurve(LoadCurve::new(&levels, &forces, &elasticity()).unwrap());
+        // X at the first point, and the level at which it is as small as wanted.
+        let first = exponent * forces[1] / (2.0 * E_STAR * levels[1]);
+        let radius = 10_f64.powf(random.within(-166.0, -150.0));
+        let depth = levels[1] * (radius / first).powf((exponent - 1.0).recip());
+        let virgin = contact(profile.clone(), depth);
+        assert!((virgin.contact_radius().log10() - radius.log10()).abs() < 0.1);
+        let limit = virgin.summary().gross_slip_force;
+        let mut pushed = virgin.clone();
+        pushed.apply(&push(random.within(0.05, 0.95) * limit)).unwrap();
+        // Ciavarella and Jäger: the load of the contact less that of one as deep as the stick zone, times mu.
+        let stuck = depth * (1.0 - pushed.displacement() / virgin.gross_slip_displacement());
+        let held = contact(profile, stuck).summary().gross_slip_force;
+        worst.close(pushed.force(), limit - held, limit);
+    }
+}

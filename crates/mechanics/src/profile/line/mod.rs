@@ -369,10 +369,10 @@ impl CurveFamily for LineContact {
         if self.width_at(s) > 0.0 { self.curve_radius(s) } else { 0.0 }
     }
 
-    fn rate(&self, level: DoubleDouble) -> f64 {
+    fn radius_and_rate(&self, level: DoubleDouble) -> [f64; 2] {
         let s = self.side_of_level(level.value());
         let (t, log) = (self.width_at(s), self.log_at(s));
-        0.25 * PI * self.length * s / (t * t * log * log * self.rise(s))
+        [self.radius_at(level), 0.25 * PI * self.length * s / (t * t * log * log * self.rise(s))]
     }
 
     fn level_of(&self, radius: f64) -> f64 {
