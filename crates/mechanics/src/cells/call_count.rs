@@ -17,8 +17,6 @@ pub(crate) struct Calls {
     pub(crate) states: usize,
     /// Copies of a slip history.
     pub(crate) copies: usize,
-    /// Functions of a place below the surface.
-    pub(crate) place_kernels: usize,
     /// Sums over the asperities near a level.
     pub(crate) asperities: usize,
 }

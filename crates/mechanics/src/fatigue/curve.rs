@@ -313,8 +313,7 @@ impl Arc {
     /// The peak next to one of the dense samples, by the golden section.
     fn peak_beside(&self, index: usize, value: &mut impl FnMut(&StressSample) -> f64) -> CurvePeak {
         let n = self.samples.len() + self.between.len() - 1;
-        let point = |index: usize| (PI * index as f64 / n as f64).cos();
-        let (low, high) = (point((index + 1).min(n)), point(index.saturating_sub(1)));
+        let (low, high) = (nested_point(n, (index + 1).min(n)), nested_point(n, index.saturating_sub(1)));
         let mut best = CurvePeak { value: f64::NEG_INFINITY, sample: [0.0; 9], at: self.instant(0.0) };
         let mut look = |x: f64| {
             let sample = combined(&nested_weights(self.samples.len() - 1, x), &self.samples);

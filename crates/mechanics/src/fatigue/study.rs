@@ -1,19 +1,19 @@
 //! Measures of a cycle at many places, each at the instants that matter there.
 
+mod place;
+
 use std::collections::HashMap;
-use std::f64::consts::TAU;
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::critical_distance::mean_over_depth;
-use super::curve::{Allowance, CurveStretch, StressCurve, StressSample, stress};
+use super::curve::{Allowance, stress};
 use super::planes::Vector;
 use super::{Cycle, Instant, Measure, Rated};
 use crate::cells::shape::Reach;
 use crate::contact::Contact;
 use crate::profile::Profile;
 use crate::range::error::Error;
-use crate::subsurface::{PlaceSums, Side, Stress, Subsurface};
+use crate::subsurface::{Side, Stress, Subsurface};
 
 /// The value of a measure of the surface below the surface.
 const NO_VALUE: Rated = Rated { value: f64::NAN, error: 0.0, plane: None, at: None };
@@ -30,14 +30,8 @@ const LEAST: f64 = 1e-3;
 /// The error of a stress by rounding, and by the chords of curved moves, over the largest pressure.
 const STRESS_ROUND_OFF: f64 = 1e-12;
 const CHORD_ERROR: f64 = 1e-6;
-/// The part of the accepted error that a mean over the depth may use.
-const AVERAGING_SHARE: f64 = 0.05;
-/// Depth, in contact radii, below which the passing of an edge is as smooth as all else.
-const DEEP: f64 = 0.3;
 /// Instants closer than this, in parts of a move, are one.
 const SAME_INSTANT: f64 = 1e-12;
-/// Rings of a state up to which a place adds them up one by one.
-const FEW_RINGS: usize = 32;
 /// Cells of a profile whose sums a place takes at every instant.
 const FEW_CELLS: usize = 64;
 /// Places at which the size of the criteria is found first.
@@ -197,7 +191,8 @@ impl<'a> Study<'a> {
     /// # Errors
     /// [`Error::Interrupted`].
     pub fn path(&mut self, place: &[f64; 3]) -> Result<Vec<(Instant, Stress)>, Error> {
-        let curve = self.curve(place, self.allowance(0..self.measures.len()), true)?;
+        let all = 0..self.measures.len();
+        let curve = self.curve(place, all.clone(), self.allowance(all), true)?;
         let mut path: Vec<(Instant, Stress)> = Vec::new();
         let Some(curve) = curve else {
             let infinite = Stress::from_components([f64::NEG_INFINITY; 6]);
@@ -231,7 +226,7 @@ impl<'a> Study<'a> {
     ) -> Result<(Vec<Rated>, usize), Error> {
         let mut allowed = self.allowance(wanted.clone());
         loop {
-            let curve = self.curve(place, allowed, true)?;
+            let curve = self.curve(place, wanted.clone(), allowed, true)?;
             let mut found = Vec::with_capacity(wanted.len());
             let mut excess = 0.0_f64;
             for index in wanted.clone() {
@@ -267,7 +262,7 @@ impl<'a> Study<'a> {
     /// they are, or below what each must `reach` to count.
     pub(super) fn sample(&mut self, place: &[f64; 3], passes: bool, reach: &[f64]) -> Result<Vec<f64>, Error> {
         let any = Allowance { stress: f64::INFINITY, slip: f64::INFINITY };
-        let Some(curve) = self.curve(place, any, passes)? else {
+        let Some(curve) = self.curve(place, 0..self.measures.len(), any, passes)? else {
             return Ok(vec![f64::INFINITY; self.measures.len()]);
         };
         let samples: Vec<Stress> = curve.samples().map(|(_, sample)| stress(sample)).collect();
@@ -347,106 +342,6 @@ impl<'a> Study<'a> {
     /// The error of a stress, Pa, below which no curve is followed.
     fn rounding(&self) -> f64 {
         self.stress * if self.cycle.is_curved() { CHORD_ERROR } else { STRESS_ROUND_OFF }
-    }
-
-    /// The curve of a place, m; `None` where a stress is infinite.
-    fn curve(&mut self, place: &[f64; 3], allowed: Allowance, passes: bool) -> Result<Option<StressCurve>, Error> {
-        let radius = self.cycle.start().coordinate(place);
-        if radius.to_bits() != self.near_radius.to_bits() {
-            self.near.clear();
-            self.near_radius = radius;
-        }
-        let near = passes && place[2] <= DEEP * self.radius;
-        let level = self.cycle.start().level_at(radius);
-        let mut stretches = Vec::new();
-        for step in self.steps() {
-            let turns = self.cycle.turns(step);
-            let passes = if near && level.is_finite() { self.cycle.passes(step, level) } else { Vec::new() };
-            let mut ends: Vec<(f64, bool)> = turns.iter().map(|part| (*part, true)).collect();
-            ends.extend(passes.iter().map(|part| (*part, false)));
-            ends.push((1.0, true));
-            ends.sort_by(|one, other| one.0.total_cmp(&other.0));
-            let mut from = (0.0, true);
-            for to in ends {
-                if to.0 - from.0 > SAME_INSTANT {
-                    stretches.push((CurveStretch { step, from: from.0, to: to.0 }, from.1 && to.1));
-                    from = to;
-                }
-            }
-        }
-        let surface = self.measures.iter().any(Measure::of_surface);
-        // Noise that the curve does not see.
-        let averaging = (AVERAGING_SHARE * allowed.stress.min(self.stress)).max(self.rounding());
-        let mut averaging_error = 0.0_f64;
-        let mut sums = None;
-        let mut curve = StressCurve::follow(&stretches, allowed, |step, part, shared| {
-            let field = self.field(step, part, shared)?;
-            let (stress, off) = if self.averaged > 0.0 {
-                mean_over_depth(&field.stresses, *place, self.averaged, averaging)
-            } else {
-                (self.stress(&field, *place, &mut sums), 0.0)
-            };
-            averaging_error = averaging_error.max(off);
-            Ok(self.looked_at(&field, stress, step, (radius, surface)))
-        })?;
-        curve.iter_mut().for_each(|curve| curve.error.stress += averaging_error);
-        Ok(curve)
-    }
-
-    /// The stress at a place. By the sums of the place, which are kept, unless a profile of many cells is asked for in
-    /// lasting fields alone.
-    fn stress(&self, field: &Field, place: [f64; 3], sums: &mut Option<PlaceSums>) -> Stress {
-        let Field { stresses: field, lasting, .. } = field;
-        if (!lasting || self.has_few_cells) && sums.is_none() && field.contact.memory_depth() <= FEW_RINGS {
-            *sums = field.place_sums(place, self.radius);
-        }
-        match sums {
-            Some(sums) if field.contact.memory_depth() <= FEW_RINGS => field.stress_by(sums, place),
-            _ => field.stress(place),
-        }
-    }
-
-    /// The field at an instant.
-    fn field(&mut self, step: usize, part: f64, shared: bool) -> Result<Rc<Field>, Error> {
-        let fields = if shared { &mut self.shared } else { &mut self.near };
-        if let Some(field) = fields.get(&(step, part.to_bits())) {
-            return Ok(field.clone());
-        }
-        if !(self.keep_going)() {
-            return Err(Error::Interrupted);
-        }
-        let (state, prescribed) = self.cycle.state(step, part);
-        let kept = fields.len() < self.kept;
-        let stresses = state.into_subsurface(self.body.0, self.body.1)?;
-        let field = Rc::new(Field { stresses, part: prescribed, lasting: shared && kept });
-        if kept {
-            fields.insert((step, part.to_bits()), field.clone());
-        }
-        Ok(field)
-    }
-
-    /// The sample of a place with its stress at an instant, and whether it is in contact.
-    fn looked_at(
-        &self,
-        field: &Field,
-        Stress { mut xx, yy, zz, xy, yz, xz }: Stress,
-        step: usize,
-        (radius, surface): (f64, bool),
-    ) -> (StressSample, bool) {
-        let Field { stresses: field, part, .. } = field;
-        if let Some(Bulk { mean, amplitude, phase }) = self.bulk {
-            xx += mean + amplitude * (TAU * (step as f64 + part) / self.cycle.moves() as f64 + phase).cos();
-        }
-        let contact = &field.contact;
-        let edge = contact.contact_radius();
-        let touched = contact.indentation() > 0.0 && radius.abs() <= edge * (1.0 + SAME_INSTANT);
-        let [mut pressure, mut shear, mut slip] = [0.0; 3];
-        if surface && touched {
-            pressure = contact.pressure(radius);
-            shear = contact.shear(radius);
-            slip = contact.slip(radius.clamp(-edge, edge)).unwrap_or(0.0);
-        }
-        ([xx, yy, zz, xy, yz, xz, pressure, shear, slip], touched)
     }
 }
 
