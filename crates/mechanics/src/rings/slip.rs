@@ -193,24 +193,35 @@ fn newton(
     lowered
 }
 
-/// Solves a positive definite system, of whose matrix the upper triangle is given, by Cholesky's factors in place.
+/// Solves a positive definite system, of whose matrix the upper triangle is given, by Cholesky's factors in place: four
+/// rows at a time, so that the rows below are written once for all four.
 fn factorise_and_solve(matrix: &mut [f64], column: &mut [f64]) {
     let size = column.len();
-    for pivot in 0..size {
-        let (above, below) = matrix.split_at_mut((pivot + 1) * size);
-        let row = &mut above[pivot * size..];
-        let inverse = row[pivot].max(f64::MIN_POSITIVE).sqrt().recip();
-        row[pivot..].iter_mut().for_each(|entry| *entry *= inverse);
-        for (offset, other) in below.chunks_exact_mut(size).enumerate() {
-            let from = pivot + 1 + offset;
-            let factor = row[from];
-            if factor.abs() > 0.0 {
-                other[from..].iter_mut().zip(&row[from..]).for_each(|(entry, of_pivot)| *entry -= factor * of_pivot);
+    for first in (0..size).step_by(4) {
+        let last = (first + 4).min(size);
+        for pivot in first..last {
+            let (above, below) = matrix.split_at_mut(pivot * size);
+            let row = &mut below[..size];
+            for before in above[first * size..].chunks_exact(size) {
+                let factor = before[pivot];
+                row[pivot..].iter_mut().zip(&before[pivot..]).for_each(|(entry, other)| *entry -= factor * other);
+            }
+            let inverse = row[pivot].max(f64::MIN_POSITIVE).sqrt().recip();
+            row[pivot..].iter_mut().for_each(|entry| *entry *= inverse);
+            column[pivot] *= inverse;
+            let value = column[pivot];
+            column[pivot + 1..].iter_mut().zip(&row[pivot + 1..]).for_each(|(entry, of_row)| *entry -= of_row * value);
+        }
+        let (above, below) = matrix.split_at_mut(last * size);
+        // Below the last few rows there are none.
+        let [a, b, c, d] = std::array::from_fn(|index| above[(first + index).min(last - 1) * size..].split_at(size).0);
+        for (from, row) in (last..).zip(below.chunks_exact_mut(size)) {
+            let factors = [a[from], b[from], c[from], d[from]];
+            let others = a[from..].iter().zip(&b[from..]).zip(&c[from..]).zip(&d[from..]);
+            for (entry, (((a, b), c), d)) in row[from..].iter_mut().zip(others) {
+                *entry = *entry - factors[0] * a - factors[1] * b - factors[2] * c - factors[3] * d;
             }
         }
-        column[pivot] *= inverse;
-        let value = column[pivot];
-        column[pivot + 1..].iter_mut().zip(&row[pivot + 1..]).for_each(|(entry, of_row)| *entry -= of_row * value);
     }
     for pivot in (0..size).rev() {
         let row = &matrix[pivot * size..(pivot + 1) * size];
@@ -222,7 +233,27 @@ fn factorise_and_solve(matrix: &mut [f64], column: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::super::stiffness::RingStiffness;
-    use super::{MOST_SWEEPS, Workspace, solve_in};
+    use super::{MOST_SWEEPS, Workspace, factorise_and_solve, solve_in};
+
+    #[test]
+    fn a_positive_definite_system_of_any_size_is_solved() {
+        let mut random = fastrand::Rng::with_seed(3);
+        for size in 1..14 {
+            // M M^T + 1.
+            let rows: Vec<Vec<f64>> = (0..size).map(|_| (0..size).map(|_| random.f64() - 0.5).collect()).collect();
+            let product = |i: usize, j: usize| rows[i].iter().zip(&rows[j]).map(|(a, b)| a * b).sum::<f64>();
+            let entry = |i: usize, j: usize| product(i, j) + if i == j { 1.0 } else { 0.0 };
+            let expected: Vec<f64> = (0..size).map(|_| random.f64() - 0.5).collect();
+            let of_row = |i: usize| expected.iter().enumerate().map(|(j, x)| entry(i, j) * x).sum::<f64>();
+            let mut column: Vec<f64> = (0..size).map(of_row).collect();
+            let upper =
+                |place: usize| if place % size < place / size { 0.0 } else { entry(place / size, place % size) };
+            factorise_and_solve(&mut (0..size * size).map(upper).collect::<Vec<_>>(), &mut column);
+            for (found, expected) in column.iter().zip(&expected) {
+                assert!((found - expected).abs() < 1e-14, "{size}: {found} is not {expected}");
+            }
+        }
+    }
 
     #[test]
     fn what_too_few_sweeps_leave_bounds_the_error_of_the_force() {
