@@ -23,8 +23,8 @@ use crate::range::Quantity;
 use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
 use crate::springs::law::SpringLaw;
-use crate::springs::rows::Rows;
-use crate::springs::twist::{SPRINGS, TwistLaw, TwistPath, gross_slip_torque};
+use crate::springs::rows::{Course, Rows};
+use crate::springs::twist::{SPRINGS, TwistLaw, gross_slip_torque};
 
 /// A contact of a smaller radius, m, carries no twist: the sixth power of the radius of its core is no number.
 const LEAST_RADIUS: f64 = 1e-40;
@@ -52,10 +52,10 @@ impl Twist {
     }
 
     /// Moves the contact; the friction work so far.
-    fn at_constant_load(&mut self, path: TwistPath) -> Result<DoubleDouble, Error> {
+    fn at_constant_load(&mut self, path: Course) -> Result<DoubleDouble, Error> {
         let target = match path {
-            TwistPath::Angle { to, .. } => Tangential::Displacement(to),
-            TwistPath::Torque { to, .. } => Tangential::Force(to),
+            Course::Place { to, .. } => Tangential::Displacement(to),
+            Course::Force { to, .. } => Tangential::Force(to),
         };
         let done = self.contact.apply(&Move { tangential: Some(target), ..Move::default() });
         done.map_err(|error| match error {
@@ -195,13 +195,13 @@ impl Contact {
         let absolute = |from: f64, target: f64| if step.relative { from + target } else { target };
         let path = match step.tangential {
             Some(Tangential::Twist(target)) => {
-                TwistPath::Angle { from: angle, to: range::TWIST.check(absolute(angle, target))? }
+                Course::Place { from: angle, to: range::TWIST.check(absolute(angle, target))? }
             }
             Some(Tangential::Torque(target)) => {
-                TwistPath::Torque { from: torque, to: range::TORQUE.check(absolute(torque, target))? }
+                Course::Force { from: torque, to: range::TORQUE.check(absolute(torque, target))? }
             }
             Some(_) => return Err(Error::TwistWithShift),
-            None => TwistPath::Angle { from: angle, to: angle },
+            None => Course::Place { from: angle, to: angle },
         };
         if changes {
             return self.twist_under_load(step, (normal, path), tolerance, keep_going);
@@ -212,7 +212,7 @@ impl Contact {
         let here = self.history.edge().level.value();
         if !self.holds_twist(here) {
             return match path {
-                TwistPath::Torque { to: target, .. } if target.abs() > 0.0 => {
+                Course::Force { to: target, .. } if target.abs() > 0.0 => {
                     Err(Error::TorqueExceedsFriction { target, limit: 0.0 })
                 }
                 // Apart, the indenter turns without anything to count from.
@@ -247,7 +247,7 @@ impl Contact {
     fn twist_under_load(
         &mut self,
         step: &Move,
-        (normal, path): (NormalPath, TwistPath),
+        (normal, path): (NormalPath, Course),
         tolerance: f64,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
@@ -258,12 +258,12 @@ impl Contact {
         let carries = twist.is_some_and(Twist::carries);
         let holds = self.holds_twist(end);
         if !holds
-            && let TwistPath::Torque { to: target, .. } = path
+            && let Course::Force { to: target, .. } = path
             && target.abs() > 0.0
         {
             return Err(Error::TorqueExceedsFriction { target, limit: 0.0 });
         }
-        let turns = matches!(path, TwistPath::Angle { from, to } if from.to_bits() != to.to_bits());
+        let turns = !path.is_force() && !path.is_still();
         if !(holds || carries && turns) {
             // Whatever way the contact opens, what a twist that stays has stored is lost by slip.
             let stored = if carries { self.state().elastic_energy } else { 0.0 };

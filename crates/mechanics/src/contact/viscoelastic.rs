@@ -11,8 +11,8 @@ use crate::range::error::Error;
 use crate::slip_history::SlipHistory;
 use crate::slip_history::limit::Coulomb;
 use crate::springs::law::{CoulombLaw, SpringLaw};
-use crate::springs::rows::Rows;
-use crate::viscoelastic::{Course, Leg, Prony, SPRINGS, Viscoelastic};
+use crate::springs::rows::{Course, Rows};
+use crate::viscoelastic::{Leg, Prony, SPRINGS, Viscoelastic};
 
 /// The least tolerance of springs, of the size of the error that their number leaves.
 pub(super) const LEAST_TOLERANCE: f64 = 1e-6;

@@ -8,6 +8,15 @@ use crate::numerics::packing::{Packed, Reader};
 /// An error that says that nothing is known.
 const MOST_ERROR: f64 = 1e6;
 
+/// A quantity along a move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Course {
+    /// An indentation or a displacement, m, or an angle, rad.
+    Place { from: f64, to: f64 },
+    /// A force, N, or a torque, N m.
+    Force { from: f64, to: f64 },
+}
+
 /// The springs of a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Rows {
@@ -25,6 +34,29 @@ pub(crate) struct Rows {
     pub(super) errors: [f64; 2],
     /// The part of the error that comes from paths that are straight in a force or torque, over that of gross slip.
     pub(crate) path_error: f64,
+}
+
+impl Course {
+    pub(crate) fn at(self, part: f64) -> f64 {
+        let (Course::Place { from, to } | Course::Force { from, to }) = self;
+        if part < 1.0 { from + part * (to - from) } else { to }
+    }
+
+    pub(crate) fn led(self, part: f64) -> Led {
+        match self {
+            Course::Place { .. } => Led::Place(self.at(part)),
+            Course::Force { .. } => Led::Sum(self.at(part)),
+        }
+    }
+
+    pub(crate) fn is_force(self) -> bool {
+        matches!(self, Course::Force { .. })
+    }
+
+    pub(crate) fn is_still(self) -> bool {
+        let (Course::Place { from, to } | Course::Force { from, to }) = self;
+        from.to_bits() == to.to_bits()
+    }
 }
 
 /// Steps that go on from each other, and change nothing of the rows at their beginning.

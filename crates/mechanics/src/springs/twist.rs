@@ -13,7 +13,7 @@ use std::f64::consts::PI;
 
 use super::law::SpringLaw;
 use super::row::{Led, Row, Slides};
-use super::rows::{Rows, Walk};
+use super::rows::{Course, Rows, Walk};
 use super::stress::from_displacements;
 use crate::indenter::Indenter;
 use crate::numerics::gauss::EIGHT_POINTS;
@@ -37,13 +37,6 @@ pub(crate) struct TwistLaw<'a> {
     pub(crate) unit: f64,
     /// G, Pa.
     pub(crate) shear_modulus: f64,
-}
-
-/// What a move leads, from its value before.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum TwistPath {
-    Angle { from: f64, to: f64 },
-    Torque { from: f64, to: f64 },
 }
 
 impl TwistLaw<'_> {
@@ -119,16 +112,6 @@ impl Row {
     }
 }
 
-impl TwistPath {
-    fn at(self, part: f64) -> Led {
-        let between = |from: f64, to: f64| if part < 1.0 { from + part * (to - from) } else { to };
-        match self {
-            TwistPath::Angle { from, to } => Led::Place(between(from, to)),
-            TwistPath::Torque { from, to } => Led::Sum(between(from, to)),
-        }
-    }
-}
-
 impl Rows {
     /// The springs of a contact at an indentation, m, that carry `deflection` of their places, m, at an angle, rad.
     pub(crate) fn of_twist(
@@ -153,7 +136,7 @@ impl Rows {
         &mut self,
         law: &TwistLaw<'_>,
         level: &dyn Fn(f64) -> f64,
-        path: TwistPath,
+        path: Course,
         tolerance: f64,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<(), Error> {
@@ -166,7 +149,7 @@ impl Rows {
         let change = (end - here).abs() / end.max(here);
         let mut count = 2 * ((0.5 * change * STEPS[0] as f64).ceil() as usize).max(1);
         let mut found = self.twisted(&law, level, path, count, keep_going)?;
-        if let TwistPath::Torque { .. } = path {
+        if path.is_force() {
             let mut error = f64::INFINITY;
             while error > tolerance && count < STEPS[1] {
                 count *= 2;
@@ -187,16 +170,15 @@ impl Rows {
         &self,
         law: &SpringLaw<'_>,
         level: &dyn Fn(f64) -> f64,
-        path: TwistPath,
+        path: Course,
         count: usize,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Rows, Error> {
         let mut walk = Walk::from(self);
-        let (TwistPath::Angle { to: target, .. } | TwistPath::Torque { to: target, .. }) = path;
-        let refused = |(_, Slides(limit))| Error::TorqueExceedsFriction { target, limit };
+        let refused = |(_, Slides(limit))| Error::TorqueExceedsFriction { target: path.at(1.0), limit };
         let led = |step: usize| {
             let part = step as f64 / count as f64;
-            ([Led::Place(level(part).max(0.0)), path.at(part)], [0.0; 2])
+            ([Led::Place(level(part).max(0.0)), path.led(part)], [0.0; 2])
         };
         for step in (0..count).step_by(2) {
             if !keep_going() {

@@ -23,8 +23,8 @@ pub use prony::{MOST_TERMS, Prony, PronyTerm};
 use crate::range;
 use crate::range::error::Error;
 use crate::springs::law::{CoulombLaw, SpringLaw};
-use crate::springs::row::{Led, Slides};
-use crate::springs::rows::{Rows, Walk};
+use crate::springs::row::Slides;
+use crate::springs::rows::{Course, Rows, Walk};
 
 /// Springs from the centre to the edge of the largest contact so far, some more or less.
 pub(crate) const SPRINGS: usize = 1024;
@@ -36,15 +36,6 @@ const PATIENCE: usize = 2_000;
 const FIRST_TOUCH: f64 = 1e-3;
 /// The least part of a move that is a step, whatever its error.
 const LEAST_PART: f64 = 1e-13;
-
-/// A quantity along a move.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Course {
-    /// An indentation or a displacement, m.
-    Place { from: f64, to: f64 },
-    /// A force, N.
-    Force { from: f64, to: f64 },
-}
 
 /// A move of a contact with memory.
 #[derive(Clone, Copy, Debug)]
@@ -69,29 +60,6 @@ struct Curvature {
 pub(crate) struct Viscoelastic {
     pub(crate) prony: Arc<Prony>,
     pub(crate) rows: Rows,
-}
-
-impl Course {
-    fn at(self, part: f64) -> f64 {
-        let (Course::Place { from, to } | Course::Force { from, to }) = self;
-        if part < 1.0 { from + part * (to - from) } else { to }
-    }
-
-    fn led(self, part: f64) -> Led {
-        match self {
-            Course::Place { .. } => Led::Place(self.at(part)),
-            Course::Force { .. } => Led::Sum(self.at(part)),
-        }
-    }
-
-    fn is_force(self) -> bool {
-        matches!(self, Course::Force { .. })
-    }
-
-    fn is_still(self) -> bool {
-        let (Course::Place { from, to } | Course::Force { from, to }) = self;
-        from.to_bits() == to.to_bits()
-    }
 }
 
 impl Rows {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::indenter::Indenter;
 use crate::profile::{Profile, Sphere};
-use crate::springs::row::{Row, Scratch};
+use crate::springs::row::{Led, Row, Scratch};
 
 fn ball() -> Indenter {
     Profile::Sphere(Sphere::new(1.0).unwrap()).indenter()
