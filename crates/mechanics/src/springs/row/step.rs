@@ -296,8 +296,8 @@ impl Row {
         let (stride, terms) = (self.len(), step.prony.terms().len());
         self.stick_throughout(step, 0.0, after, trial);
         held.clear();
-        for index in 0..after.active {
-            let (bound, inside) = (step.scale * after.rooms[index], self.rooms[index] > 0.0);
+        for (index, (room, before)) in after.rooms[..after.active].iter().zip(&self.rooms).enumerate() {
+            let (bound, inside) = (step.scale * room, *before > 0.0);
             let span = if inside { 1.0 } else { step.span(spans, self.levels[index], index) };
             if bound <= 0.0 || span <= 0.0 {
                 continue;
