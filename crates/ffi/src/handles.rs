@@ -4,6 +4,7 @@
 //! follows. Slots are kept for the next contact when one is freed, so that an old handle finds a slot of another
 //! generation: it is refused. A slot is locked while a call works on its contact.
 
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, MutexGuard, OnceLock, PoisonError, TryLockError};
 
 use crate::contact::Held;
@@ -19,11 +20,13 @@ const FIRST_CHUNK: usize = 1024;
 const CHUNKS: usize = 21;
 
 struct Slot {
-    generation: u32,
-    contact: Option<Held>,
+    /// Read before the lock, so that an old handle never makes the contact of another thread busy.
+    generation: AtomicU32,
+    contact: Mutex<Option<Held>>,
 }
 
-type Chunk = Box<[Mutex<Slot>]>;
+type Chunk = Box<[Slot]>;
+type Locked = MutexGuard<'static, Option<Held>>;
 
 static SLOTS: [OnceLock<Chunk>; CHUNKS] = [const { OnceLock::new() }; CHUNKS];
 static FREE: Mutex<Free> = Mutex::new(Free { next: 0, slots: Vec::new() });
@@ -56,52 +59,58 @@ pub(crate) fn insert(contact: Held) -> Result<usize, Fault> {
     };
     drop(free);
     let (chunk, offset) = place(index);
+    let none = |_| Slot { generation: AtomicU32::new(1), contact: Mutex::new(None) };
     let slots = SLOTS
         .get(chunk)
         .ok_or_else(|| Fault::new(SS_INTERNAL, "there are too many contacts"))?
-        .get_or_init(|| (0..FIRST_CHUNK << chunk).map(|_| Mutex::new(Slot { generation: 1, contact: None })).collect());
-    let mut slot = slots[offset].lock().unwrap_or_else(PoisonError::into_inner);
-    slot.contact = Some(contact);
-    Ok((slot.generation as usize) << 32 | (index + 1))
+        .get_or_init(|| (0..FIRST_CHUNK << chunk).map(none).collect());
+    let slot = &slots[offset];
+    *slot.contact.lock().unwrap_or_else(PoisonError::into_inner) = Some(contact);
+    Ok((slot.generation.load(Ordering::Acquire) as usize) << 32 | (index + 1))
 }
 
-/// Locks the slot of a handle with its contact.
-fn slot(handle: usize) -> Result<MutexGuard<'static, Slot>, Fault> {
+/// The slot of a handle, and its contact, locked.
+fn slot(handle: usize) -> Result<(&'static Slot, Locked), Fault> {
     let gone = || Fault::new(SS_NO_CONTACT, "this handle names no contact: it was freed, or never made");
     let (index, generation) = ((handle & u32::MAX as usize).checked_sub(1).ok_or_else(gone)?, handle >> 32);
     let (chunk, offset) = place(index);
-    let mutex = SLOTS.get(chunk).and_then(OnceLock::get).and_then(|slots| slots.get(offset)).ok_or_else(gone)?;
-    let slot = match mutex.try_lock() {
-        Ok(slot) => slot,
+    let slot = SLOTS.get(chunk).and_then(OnceLock::get).and_then(|slots| slots.get(offset)).ok_or_else(gone)?;
+    let is_named = || slot.generation.load(Ordering::Acquire) as usize == generation;
+    if !is_named() {
+        return Err(gone());
+    }
+    let contact = match slot.contact.try_lock() {
+        Ok(contact) => contact,
         Err(TryLockError::WouldBlock) => {
             return Err(Fault::new(SS_BUSY, "another thread is using this contact: each is used by one at a time"));
         }
         // A call has failed half-way, and with it its contact.
         Err(TryLockError::Poisoned(poisoned)) => {
-            mutex.clear_poison();
-            let mut slot = poisoned.into_inner();
-            slot.contact = None;
-            slot
+            slot.contact.clear_poison();
+            let mut contact = poisoned.into_inner();
+            *contact = None;
+            contact
         }
     };
-    if slot.generation as usize == generation && slot.contact.is_some() { Ok(slot) } else { Err(gone()) }
+    // It may have been freed since.
+    if is_named() && contact.is_some() { Ok((slot, contact)) } else { Err(gone()) }
 }
 
 /// Works on the contact of a handle.
 pub(crate) fn with<R>(handle: usize, work: impl FnOnce(&mut Held) -> Result<R, Fault>) -> Result<R, Fault> {
-    let mut slot = slot(handle)?;
-    slot.contact.as_mut().map_or_else(|| Err(Fault::new(SS_NO_CONTACT, "no contact")), work)
+    let (_, mut contact) = slot(handle)?;
+    contact.as_mut().map_or_else(|| Err(Fault::new(SS_NO_CONTACT, "no contact")), work)
 }
 
 /// Ends the contact of a handle.
 pub(crate) fn remove(handle: usize) -> Result<(), Fault> {
-    let mut slot = slot(handle)?;
-    let contact = slot.contact.take();
-    let reusable = slot.generation < u32::MAX;
-    slot.generation = slot.generation.saturating_add(1);
-    drop(slot);
+    let (slot, mut contact) = slot(handle)?;
+    let taken = contact.take();
+    let generation = slot.generation.load(Ordering::Acquire);
+    slot.generation.store(generation.saturating_add(1), Ordering::Release);
     drop(contact);
-    if reusable {
+    drop(taken);
+    if generation < u32::MAX {
         free().slots.push((handle & u32::MAX as usize) - 1);
     }
     Ok(())

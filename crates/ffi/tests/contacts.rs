@@ -208,6 +208,28 @@ fn ten_thousand_misuses_give_a_code_and_a_text() {
 }
 
 #[test]
+fn a_handle_of_a_contact_that_is_gone_does_not_disturb_the_one_in_its_slot() {
+    let (gone, owner) = loop {
+        let gone = fresh(BALL).addr();
+        assert_eq!(ss_free(ptr::without_provenance_mut(gone)), SS_OK);
+        let next = fresh(BALL);
+        // The lower half of a handle is the number of its slot, which another thread may have taken in the meantime.
+        if gone & 0xffff_ffff == next.addr() & 0xffff_ffff {
+            break (gone, next);
+        }
+        assert_eq!(ss_free(next), SS_OK);
+    };
+    thread::scope(|scope| {
+        let misuse = scope.spawn(|| {
+            (0..200_000).for_each(|_| assert_eq!(ss_commit(ptr::without_provenance_mut(gone)), SS_NO_CONTACT));
+        });
+        while !misuse.is_finished() {
+            state_of(owner);
+        }
+    });
+}
+
+#[test]
 fn a_definition_that_is_wrong_is_refused_with_its_place() {
     let wrong = support::text(&BALL.replace("0.3}", "7}"));
     let mut contact = null_mut();
