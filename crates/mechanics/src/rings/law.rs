@@ -2,8 +2,8 @@
 //!
 //! A contact keeps its rings from step to step. They have equal areas, which are doubled where the contact outgrows its
 //! rings, and halved where few of them are left. A step is made by the rings that touch before or after it: m rings of
-//! equal area have the matrix of [`RingStiffness`] for m, whatever the contact was divided into. The state is the force on each
-//! ring, which would be tau + K dU if all rings stuck, and so includes the slip of all steps before.
+//! equal area have the matrix of [`RingStiffness`] for m, whatever the contact was divided into. The state is the force
+//! on each ring, which would be tau + K dU if all rings stuck, and so includes the slip of all steps before.
 
 mod contact;
 mod packed;
