@@ -88,6 +88,7 @@ async fn the_envelope_is_checked_too() {
         (&Method::PUT, "/simulate", Some(&*sound), vec![], 405, "method_not_allowed"),
         (&get, "/nowhere", None, vec![], 404, "not_found"),
         (&get, "/problems/none", None, vec![], 404, "not_found"),
+        (&get, "/docs//index.css", None, vec![], 404, "not_found"),
         (&get, "/contacts/7", None, vec![], 404, "contact_not_found"),
         (&get, "/contacts/%ff", None, vec![], 404, "contact_not_found"),
         (&get, &*nobody, None, vec![], 404, "contact_not_found"),
@@ -102,6 +103,8 @@ async fn the_envelope_is_checked_too() {
         let refused = problem(server.send(method.clone(), path, body, &headers).await).await;
         assert_eq!((refused.status, refused.code.as_str()), (status, code), "{method} {path} {headers:?}: {refused:?}");
     }
+    // A letter by its percent sign is the same path.
+    assert_eq!(server.get("/problems/not%5Ffound").await.status(), 200);
     for (path, pointer) in [
         ("/contacts?limit=0", "/limit"),
         ("/contacts?limit=1001", "/limit"),

@@ -8,6 +8,7 @@ use axum::Json;
 use axum::extract::State;
 use axum::http::Uri;
 use axum::response::IntoResponse;
+use percent_encoding::percent_decode_str;
 use serde_json::{Value, json};
 
 use super::prelude::*;
@@ -65,8 +66,8 @@ pub async fn get_openapi() -> Response {
         example = json!({"code": "invalid_input", "title": "The request is invalid", "status": 422})))
 )]
 pub async fn get_problem(uri: Uri) -> Result<Json<Value>, Problem> {
-    let code = uri.path().rsplit('/').next().unwrap_or_default();
-    let kind = Code::parse(code).ok_or_else(|| not_found(&uri))?;
+    let code = percent_decode_str(uri.path().rsplit('/').next().unwrap_or_default()).decode_utf8_lossy();
+    let kind = Code::parse(&code).ok_or_else(|| not_found(&uri))?;
     Ok(Json(json!({"code": code, "title": kind.title(), "status": kind.status()})))
 }
 

@@ -41,11 +41,11 @@ static DOCUMENTATION: LazyLock<Vec<Asset>> =
 /// The file that a path of these names.
 pub async fn get(uri: Uri, headers: HeaderMap) -> Response {
     let path = uri.path();
-    let (assets, name) = match (path.strip_prefix("/page/"), path.strip_prefix("/docs")) {
+    let (assets, name) = match (path.strip_prefix("/page/"), path.strip_prefix("/docs/")) {
+        _ if path == DOCS[0] => return Redirect::to(DOCS[1]).into_response(),
         (Some(name), _) => (&ASSETS, name),
-        (_, Some("")) => return Redirect::to(DOCS[1]).into_response(),
-        (_, Some("/")) => (&DOCUMENTATION, "index.html"),
-        (_, Some(name)) => (&DOCUMENTATION, name.trim_start_matches('/')),
+        (_, Some("")) => (&DOCUMENTATION, "index.html"),
+        (_, Some(name)) => (&DOCUMENTATION, name),
         (None, None) => (&ASSETS, "index.html"),
     };
     let name = percent_decode_str(name).decode_utf8_lossy();
